@@ -128,6 +128,7 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   const bool is_judged = attempt.depth >= Depth::kIntervals;
   if (is_judged) {
     result.findings = FindInRecords(result.records);
+    Append(result.findings, FindMissingRows(attempt.prepared.records));
     Append(result.findings, FindVaryingLoads(data));
   }
   const bool any_virgin = problem.state.Any(InitialState::kVirgin);

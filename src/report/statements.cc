@@ -117,10 +117,17 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"glitches_left_out", "measurement faults are left out"},
     {"no_closed_cycle",
      "no cycle ends where it began: record one and a half or more of one amplitude"},
+    {"rows_missing",
+     "no rows for {gap:s} from {from:s} on, and what turned there is not seen: --select "
+     "time=LO:HI"},
     {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},
     {"load_not_followed",
      "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
      "one load"},
+    {"load_not_proportional",
+     "each file alone gives its own μ, from {least:-} to {most:-}: Tc is not in proportion to "
+     "these "
+     "loads; mindahl batch fits the files apart"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination",

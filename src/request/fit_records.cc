@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -236,9 +237,96 @@ bool IsRivalled(const FitResult& before, const FitResult& after) {
   });
 }
 
-/// Fits the record again with the term that explains most of what the law misses, where the law
-/// alone is not adequate; with the next one where it does not gain enough, or the slip force is
-/// lost.
+/// Says where each file alone has a Tc of its own over the load, further apart than their errors: a
+/// load series has one μ, and what the law then misses is no term's.
+std::optional<identification::Finding> FindDisproportion(const FitOptions& options,
+                                                         std::span<const Record> records,
+                                                         const FitResult& fit) {
+  constexpr double kLeastSpread = 0.02;
+  if (!fit.is_load_series() || fit.adequacy.verdict == AdequacyVerdict::kAdequate) return {};
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  double lowest_upper = least;
+  double highest_lower = 0.0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    FitOptions alone = options;
+    alone.normal_loads.clear();
+    alone.initial_states = {fit.records[r].initial_state};
+    const double load = *fit.records[r].normal_load;
+    const FitResult found = identification::Fit(records.subspan(r, 1), alone, Depth::kIntervals);
+    const identification::ParameterEstimate* slip_force = found.Find("slip_force");
+    if (slip_force == nullptr || !slip_force->is_known() || !slip_force->upper95) return {};
+    least = std::min(least, slip_force->value / load);
+    most = std::max(most, slip_force->value / load);
+    lowest_upper = std::min(lowest_upper, *slip_force->upper95 / load);
+    highest_lower = std::max(highest_lower, *slip_force->lower95 / load);
+  }
+  if (!(highest_lower > lowest_upper) || !(most > (1 + kLeastSpread) * least)) return {};
+  return identification::Finding{.code = "load_not_proportional",
+                                 .numbers = {{"least", least}, {"most", most}}};
+}
+
+/// Holds what may make a fit better, and the option that does it.
+struct Trial {
+  FitOptions options;
+  report::NextStep step;
+};
+
+/// Leaves out the first cycle, whose past is not recorded, where most of what the law misses lies
+/// there.
+std::optional<Trial> WithoutFirstCycle(const FitOptions& options, const FitResult& fit) {
+  constexpr double kWorse = 4.0;
+  constexpr std::size_t kFewestCycles = 3;
+  const identification::RecordFit& record = fit.records.front();
+  const std::size_t cycles = record.measures.cycles;
+  if (fit.records.size() > 1 || options.preparation.cycles || options.preparation.samples ||
+      cycles < kFewestCycles) {
+    return std::nullopt;
+  }
+  const auto mean_square = [&](std::size_t begin, std::size_t end) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      squares += record.counts[i] * record.residual[i] * record.residual[i];
+      count += record.counts[i];
+    }
+    return squares / std::max(count, 1.0);
+  };
+  const std::size_t second = record.reversals[1];
+  if (!(mean_square(0, second) > kWorse * mean_square(second, record.counts.size()))) return {};
+  Trial trial{.options = options, .step = {}};
+  trial.options.preparation.cycles = {2, cycles};
+  trial.step.text = "without the first cycle, whose past is not recorded";
+  trial.step.options = fmt::format("--select cycles=2:{}", cycles);
+  return trial;
+}
+
+/// Adds a term.
+/// @param name  as LikelyTerms() gives it
+Trial WithTerm(const FitOptions& options, const std::string& name, const Record& record) {
+  Trial trial{.options = options, .step = {}};
+  if (const auto* group = identification::FindTermGroup(name)) {
+    for (const std::string_view term : group->terms) {
+      if (!options.fixed.contains(std::string(term))) trial.options.terms.emplace_back(term);
+    }
+    trial.step.text = group->meaning;
+    trial.step.options = name == "rig_stiffness" ? "--rig-stiffness fit" : "--terms " + name;
+    return trial;
+  }
+  const std::string& column =
+      std::ranges::find(record.covariates, name, [](const loop::Covariate& covariate) {
+        return identification::NameOfCovariate(covariate.name);
+      })->name;
+  trial.options.covariates = {column};
+  trial.step.text = "column " + column;
+  const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
+  trial.step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
+  return trial;
+}
+
+/// Fits the record again without its first cycle, or with the term that explains most of what the
+/// law misses, where the law alone is not adequate; with the next one where it does not gain
+/// enough, or the slip force is lost.
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records,
                                              const FitResult& fit) {
@@ -247,55 +335,41 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !(before > kLeastMisfit) ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
-      fit.FindFinding("force_at_limit") != nullptr || !options.terms.empty() ||
+      fit.FindFinding("force_at_limit") != nullptr ||
+      fit.FindFinding("load_not_proportional") != nullptr || !options.terms.empty() ||
       !options.covariates.empty()) {
     return std::nullopt;
   }
-  const std::vector<loop::RecordView> views(records.begin(), records.end());
-  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
-    report::NextStep step;
+  FitResult found;
+  const auto gains = [&](Trial& trial) {
+    report::NextStep& step = trial.step;
     step.misfit_before = *before;
-    const bool is_rig = name == "rig_stiffness";
-    const auto* group = identification::FindTermGroup(name);
-    FitOptions tried = options;
-    if (group != nullptr) {
-      for (const std::string_view term : group->terms) {
-        if (!options.fixed.contains(std::string(term))) tried.terms.emplace_back(term);
-      }
-      step.text = group->meaning;
-      step.options = is_rig ? "--rig-stiffness fit" : "--terms " + name;
-    } else {
-      const auto& columns = records.front().covariates;
-      const std::string& column =
-          std::ranges::find(columns, name, [](const loop::Covariate& covariate) {
-            return identification::NameOfCovariate(covariate.name);
-          })->name;
-      tried.covariates = {column};
-      step.text = "column " + column;
-      const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
-      step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
-    }
     // With the term another law may be the better one, and miss otherwise.
     if (request.fit.model == nullptr) {
       step.options += fmt::format(" --model {}", options.model->name);
     }
     try {
-      const FitResult found = identification::Fit(records, tried, Depth::kIntervals);
-      if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
-      step.misfit_after = *found.adequacy.misfit_over_half_gap;
-      const double most = (1 - options.thresholds.advised_gain) * *before;
-      if (!(step.misfit_after <= most) ||
-          LosesSlipForce(fit, found, group == nullptr, options.thresholds)) {
-        continue;
-      }
-      if (IsRivalled(fit, found)) return std::nullopt;
-      for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
+      found = identification::Fit(records, trial.options, Depth::kIntervals);
     } catch (const InvalidArgument&) {
-      continue;  // the record does not determine it
+      return false;  // the record does not determine it
     }
+    if (!found.converged || !found.adequacy.misfit_over_half_gap) return false;
+    step.misfit_after = *found.adequacy.misfit_over_half_gap;
+    for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
+    return step.misfit_after <= (1 - options.thresholds.advised_gain) * *before &&
+           !LosesSlipForce(fit, found, !trial.options.covariates.empty(), options.thresholds);
+  };
+  std::optional<Trial> later = WithoutFirstCycle(options, fit);
+  if (later && gains(*later)) return later->step;
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
+    Trial trial = WithTerm(options, name, records.front());
+    if (!gains(trial)) continue;
     // A rig that cannot be told from the law is to be measured.
+    const bool is_rig = name == "rig_stiffness";
     if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
-    return step;
+    if (IsRivalled(fit, found)) return std::nullopt;
+    return trial.step;
   }
   return std::nullopt;
 }
@@ -391,6 +465,9 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     asked = FitAsked(request, options, records);
   } catch (const identification::TooFewSamples& error) {
     Refuse("{}: {}", fmt::join(files, ", "), error.what());
+  }
+  if (const auto disproportion = FindDisproportion(asked.options, records, asked.fit)) {
+    asked.fit.findings.push_back(*disproportion);
   }
   std::optional<report::NextStep> next;
   if (!request.chooses_terms) next = FindNextStep(request, asked.options, records, asked.fit);

@@ -85,6 +85,26 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   EXPECT_EQ(FindInRecords(records).at(0).Number("record"), 2);
 }
 
+TEST(FindMissingRows, NamesAGapOfAQuarterOfACycleAndNoUnevenSampling) {
+  loop::PreparedRecord prepared;
+  std::vector<double> time;
+  for (std::size_t i = 0; i < 400; ++i) time.push_back(0.01 * static_cast<double>(i));
+  prepared.reversals = {50, 100, 150, 200, 250, 300, 350};  // cycles of a second
+  prepared.record.time = time;
+  EXPECT_THAT(FindMissingRows(std::span(&prepared, 1)), IsEmpty());
+  for (std::size_t i = 220; i < 400; ++i) time[i] += 0.4;
+  const std::vector<Finding> found = FindMissingRows(std::span(&prepared, 1));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "rows_missing");
+  EXPECT_NEAR(*found[0].Number("gap"), 0.41, 1e-12);
+  EXPECT_NEAR(*found[0].Number("from"), 2.19, 1e-12);
+  // As few rows as a step apart are no gap.
+  const std::vector<double> sparse = {0.0, 0.3, 0.6, 0.9, 1.2};
+  prepared.record.time = sparse;
+  prepared.reversals = {1, 2, 3};
+  EXPECT_THAT(FindMissingRows(std::span(&prepared, 1)), IsEmpty());
+}
+
 TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
   ScaledRecords data;
   ScaledRecord& record = data.records.emplace_back();

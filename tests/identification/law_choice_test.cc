@@ -98,6 +98,22 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   EXPECT_EQ(dahl.FindFinding("other_law_fits_better"), nullptr);
 }
 
+TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
+  // An amplitude that grows by 2 %, from the middle of a stroke on.
+  const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);
+  History displacement = cycles;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] *= 1 + 0.02 * static_cast<double>(i) / static_cast<double>(cycles.size());
+  }
+  const Record whole =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+  for (const std::size_t begin : {kPerCycle / 8, 3 * kPerCycle / 8, 7 * kPerCycle / 8}) {
+    const FitResult fit = FitOne(Noisy(From(whole, kPerCycle + begin)));
+    ASSERT_TRUE(fit.law_choice);
+    EXPECT_FALSE(fit.law_choice->prefers_alternative()) << begin;
+  }
+}
+
 TEST(LawChoice, IsMadeByASecondAmplitude) {
   for (const char* model : {"mindlin-dahl", "dahl"}) {
     const Record record = Noisy(TwoAmplitudes(model, 1.2 * kGrossSlip, 0.5 * kGrossSlip));

@@ -50,6 +50,7 @@ struct Made {
   std::string verdict = "identifiable";
   double half_gap = 0.0;
   bool done = true;
+  std::vector<std::string> warnings = {};
 };
 
 BatchEntry EntryOf(const Made& made, const std::string& file) {
@@ -61,6 +62,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
       {"identifiability", made.verdict}};
   json["measured"]["half_gap"]["value"] = made.half_gap;
   json["warnings"] = nlohmann::json::array();
+  for (const std::string& code : made.warnings) json["warnings"].push_back({{"code", code}});
   BatchEntry entry;
   entry.done = made.done;
   entry.file = file;
@@ -88,7 +90,8 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   const auto repeats = RepeatsOf({{40, 3, 3 * kNormal95, "identifiable", 41},
                                   {48, 1, 4 * kNormal95, "effective", 43},
                                   {1000, 1, kNormal95, "bounded_below", 48},
-                                  {2000, 1, kNormal95, "identifiable", 99, /*done=*/false}});
+                                  {2000, 1, kNormal95, "identifiable", 99, /*done=*/false},
+                                  {9, 1, 1, "not_identifiable", 1, true, {"loop_not_seen"}}});
   const auto& slip_force = repeats["slip_force"];
   EXPECT_EQ(slip_force["files"], 2);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);

@@ -76,6 +76,67 @@ TEST(FitRecords, TurnsTheForceOfAFileWhoseSignIsTheOther) {
   EXPECT_THAT(made.notes, Contains(StartsWith("b.csv: the force is turned")));
 }
 
+/// Sine cycles of a contact at which a force is added, in files a.csv, b.csv, …
+report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitRequest& request,
+                        const std::function<double(double)>& distort = std::identity()) {
+  std::vector<io::RecordFile> files;
+  for (const models::BranchLaw& law : laws) {
+    io::RecordFile& file = files.emplace_back();
+    for (const double sine : testing::Sine(3, 100)) file.record.displacement.push_back(2e-6 * sine);
+    file.record.force =
+        testing::Respond(testing::Model("mindlin-dahl"), law, file.record.displacement);
+    for (double& x : file.record.displacement) x = distort(x);
+    Generator generator(4);
+    for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
+    for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
+    file.name = std::string(1, static_cast<char>('a' + files.size() - 1)) + ".csv";
+  }
+  return FitRecords(request, std::move(files));
+}
+
+TEST(NextStep, LeavesOutTheFirstCycleWhosePastIsNotRecorded) {
+  // It ran downwards before it was stopped in the middle, and goes on upwards.
+  io::RecordFile file;
+  const std::vector<double> sine = testing::Sine(5, 100);
+  std::vector<double> path(sine.begin(), sine.begin() + 150);
+  for (const double x : testing::Sine(4, 100)) path.push_back(x);
+  for (double& x : path) x *= 1.5e-6;
+  const std::vector<double> force =
+      testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}, path);
+  file.record.displacement.assign(path.begin() + 150, path.end());
+  file.record.force.assign(force.begin() + 150, force.end());
+  Generator generator(4);
+  for (double& f : file.record.force) f += 0.1 * testing::Normal(generator);
+  for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
+  const report::Report made = FitRecords({}, {file});
+  ASSERT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  ASSERT_TRUE(made.next);
+  EXPECT_THAT(made.next->options, StartsWith("--select cycles=2:"));
+  EXPECT_LT(made.next->misfit_after, 0.1 * made.next->misfit_before);
+}
+
+TEST(NextStep, IsNoneWhereACauseWithoutATermSeemsToDescribeTheRecordAsWell) {
+  const auto curved = [](double x) { return x + 0.02 * x * x / 2e-6; };
+  const report::Report made = FitLoops({{2e7, 1.0 / 3, 60.0}}, {}, curved);
+  ASSERT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_TRUE(std::ranges::any_of(made.fit.adequacy.causes, [](const auto& cause) {
+    return cause.code == "displacement_sensor" && cause.explains > 0.8;
+  }));
+  EXPECT_FALSE(made.next);
+}
+
+TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
+  FitRequest request;
+  request.contact.normal_loads = {{50, 0}, {100, 0}, {200, 0}};
+  const report::Report made =
+      FitLoops({{3e7, 1.0 / 3, 20.0}, {3.8e7, 1.0 / 3, 33.0}, {4.8e7, 1.0 / 3, 55.0}}, request);
+  const identification::Finding* found = made.fit.FindFinding("load_not_proportional");
+  ASSERT_NE(found, nullptr);
+  EXPECT_NEAR(*found->Number("least"), 0.275, 0.003);
+  EXPECT_NEAR(*found->Number("most"), 0.4, 0.004);
+  EXPECT_FALSE(made.next);
+}
+
 TEST(FitRecords, RefusesAForceBesideATorque) {
   io::RecordFile torque = LoopFile();
   torque.is_torsional = true;

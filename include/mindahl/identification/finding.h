@@ -44,8 +44,10 @@ inline constexpr auto kFindings = [] {
       {.code = "reversals_uncertain"},
       {.code = "glitches_left_out", .severity = kNote},
       {.code = "no_closed_cycle", .severity = kNote},
+      {.code = "rows_missing"},
       {.code = "load_followed", .severity = kNote},
       {.code = "load_not_followed"},
+      {.code = "load_not_proportional"},
       // about the identifiability of the parameters
       {"undetermined_parameter", kNotIdentifiable},
       {"undetermined_combination", kNotIdentifiable},

@@ -22,6 +22,10 @@ namespace mindahl::identification {
 /// whatever is fitted. Numbers of a record count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 
+/// `rows_missing` where time jumps by a quarter of a cycle or more: turns in it are not seen.
+/// Numbers: gap and from, in seconds, and record of several.
+std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records);
+
 /// `load_followed` where the normal load varies within a record and the law knows it,
 /// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's
 /// standard deviation over its mean, and record of several.
