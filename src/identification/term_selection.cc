@@ -363,6 +363,7 @@ const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
 /// @param starts  of these, beside its solution; null: from starts of its own
 Selection::Model Selection::FitWith(const TermChoice& choice,
                                     const std::map<std::string, double>* starts) {
+  constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
   Model model{.options = choice.AddedTo(base_.options), .fit = {}};
   FitOptions options = model.options;
   if (starts != nullptr) {
@@ -372,6 +373,7 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
   }
   options.preparation.force_sense = base_.fit.force_sense;
   options.preparation.held_out = held_out_;
+  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
   model.fit = FitTo(options, Depth::kEstimate);
   return model;
 }
