@@ -110,9 +110,9 @@ struct Cell {
 
 /// Reads a whole cell as a plain decimal number: sign, digits, one decimal mark, exponent; or as a
 /// time of day, "10:11:12.5", perhaps behind a date. "inf", hexadecimal and thousands separators
-/// are no numbers; a magnitude below the smallest double is 0.
-/// @param decimal_comma  "1,5" is 1.5; a decimal comma needs a digit on both sides
-Cell ReadCell(std::string_view text, bool decimal_comma);
+/// are no numbers; a magnitude below the smallest double is 0. "1,5" is 1.5, a decimal comma with a
+/// digit on both sides: between commas it stands in quotation marks.
+Cell ReadCell(std::string_view text);
 
 /// Describes the fault of a cell that should hold a number, and the remedy.
 std::string DescribeCellFault(std::string_view text, Cell::Kind kind);

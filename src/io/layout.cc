@@ -33,7 +33,7 @@ struct Row {
   bool ReadCells(char delimiter) {
     CellCursor cursor(text, delimiter);
     while (cursor.has_next()) {
-      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter != ',').kind);
+      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take())).kind);
       numbers += IsNumber(kinds.back()) ? 1 : 0;
       texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
       if (!cells.back().empty()) filled = cells.size();
@@ -151,7 +151,7 @@ class Reading {
         !names_.empty() && names_.front() == "X_Value" && !layout_.mostly_numbers[0];
     for (const Row& row : std::span(rows_).first(has_no_times ? data_ : 0)) {
       if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
-      const double step = ReadCell(row.cells[1], true).value;
+      const double step = ReadCell(row.cells[1]).value;
       if (step > 0) layout_.header.interval = step;
     }
 
@@ -346,7 +346,8 @@ class Reading {
   }
 
   /// Returns what is said of a column whose marks seem to separate thousands: all of them have
-  /// three digits behind them, and the other numbers are whole and below 1000.
+  /// three digits behind them, and the other numbers are whole and below 1000. Between commas, in
+  /// quotation marks, there need be no other.
   std::string GroupedIn(std::size_t column) const {
     const Row* grouped = nullptr;  // the first
     bool has_whole = false;
@@ -367,7 +368,10 @@ class Reading {
         return "";
       }
     }
-    if (grouped == nullptr || !has_whole) return "";
+    if (grouped == nullptr) return "";
+    const bool is_quoted =
+        layout_.delimiter == ',' && grouped->cells[column].find(',') != std::string::npos;
+    if (!has_whole && !is_quoted) return "";
     return fmt::format(
         "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have three "
         "digits behind them and the other numbers are whole: write it without; if it is a decimal "

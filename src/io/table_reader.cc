@@ -68,7 +68,7 @@ void TableReader::ReadRow(std::string_view row) {
       is_whole = is_whole && std::isfinite(values_[count]);
     } else {
       has_content = true;
-      if (mark_ == '\0' && layout_.has_decimal_comma() && number.find('.') != number.npos) {
+      if (mark_ == '\0' && number.find('.') != number.npos) {
         mark_ = '.';
         mark_line_ = row_line_;
       }
@@ -125,7 +125,7 @@ void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
 
 /// Reads a cell that is not plainly a number.
 void TableReader::ReadCell(std::size_t column, std::string_view text) {
-  const Cell cell = io::ReadCell(text, layout_.has_decimal_comma());
+  const Cell cell = io::ReadCell(text);
   const TableColumn& of = table_.columns[column];
   values_[column] = cell.value;
   if (cell.kind == Cell::Kind::kClock) {
@@ -141,7 +141,7 @@ void TableReader::ReadCell(std::size_t column, std::string_view text) {
     if ((is_missing ? of.missing : of.broken).empty()) {
       faults_[column] = At(column, DescribeCellFault(text, cell.kind));
     }
-  } else if (cell.decimal_mark != '\0' && layout_.has_decimal_comma()) {
+  } else if (cell.decimal_mark != '\0') {
     if (mark_ == '\0') {
       mark_ = cell.decimal_mark;
       mark_line_ = row_line_;
@@ -170,8 +170,7 @@ bool TableReader::BelongsToHeader(std::string_view row) {
     if (cells.has_next()) cells.Skip();
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
-  if (column == layout_.columns() ||
-      io::ReadCell(first, layout_.has_decimal_comma()).kind != Cell::Kind::kText) {
+  if (column == layout_.columns() || io::ReadCell(first).kind != Cell::Kind::kText) {
     return false;
   }
   if (gap_ && !gap_->fault.empty()) return true;

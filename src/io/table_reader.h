@@ -22,7 +22,6 @@ struct Layout {
   std::string names_row, units_row;  // as they stand in the file: blocks of data repeat them
 
   [[nodiscard]] std::size_t columns() const { return header.columns.size(); }
-  [[nodiscard]] bool has_decimal_comma() const { return delimiter != ','; }
 };
 
 /// Rows, the first of a file, in which the layout is looked for: at most so many are above the

@@ -315,6 +315,17 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 
+TEST(Layouts, OfQuotedDecimalCommasBetweenCommas) {
+  const auto file = Read("t [s],x [mm],F [N]\n\"0,00\",\"0,5\",\"-1,25\"\n\"0,01\",1,\"1,234\"\n",
+                         Choose("x", "F"));
+  EXPECT_EQ(file.record.time, (std::vector<double>{0.0, 0.01}));
+  EXPECT_EQ(file.record.displacement, (std::vector<double>{0.5e-3, 1e-3}));
+  EXPECT_EQ(file.record.force, (std::vector<double>{-1.25, 1.234}));
+  EXPECT_THAT(Refusal("x [mm],F [N]\n1,\"1,234\"\n2,\"-2,345\"\n"),
+              HasSubstr("'1,234' has a mark that separates thousands"));
+  EXPECT_EQ(Read("x [mm],F [N]\n1,1.234\n2,-2.345\n").record.force.front(), 1.234);
+}
+
 TEST(Thousands, ThatAreMarkedAreRefusedUnlessMultiplied) {
   for (const char mark : {'.', ','}) {
     const std::string text = Replaced("x [nm];F [mN];a\n0;-0;1\n-994;16;1\n-1_025;17_040;2\n", "_",
