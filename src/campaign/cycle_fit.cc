@@ -38,6 +38,8 @@ constexpr std::array kFlags = {
     CycleFlag{"alpha_open", "the cycle does not determine alpha"},
     CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
     CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
+    CycleFlag{"rows_missing",
+              "time jumps by a quarter of a cycle or more: what turned there is not seen"},
     CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
     CycleFlag{"glitches", "spikes, dropouts or held values were left out"},
 };
@@ -136,6 +138,7 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   if (!result->converged) fit.flags.emplace_back("not_converged");
   const identification::RecordFit& fitted = result->records.front();
   if (fitted.glitches.total > 0) fit.flags.emplace_back("glitches");
+  if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
   FillFacts(FactsOf(record, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
   for (const char* name : {"sigma", "alpha", "slip_force", "force_offset"}) {

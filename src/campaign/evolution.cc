@@ -375,7 +375,10 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
     ++evolution.fits;
-    if (!value || fit.HasFlag(quantity.open_flag) || fit.HasFlag("not_converged")) continue;
+    if (!value || fit.HasFlag(quantity.open_flag) || fit.HasFlag("not_converged") ||
+        fit.HasFlag("rows_missing")) {
+      continue;
+    }
     ++evolution.known;
     // A value without an error is exact, held or without noise: then all have
     // one weight.
@@ -392,7 +395,7 @@ void Describe(std::vector<Evolution>& evolutions) {
 void DissipatedEnergy::Add(const CycleFit& fit) {
   constexpr std::size_t kNeighbours = 9;
   const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
-  const bool is_open = fit.HasFlag("not_closed");
+  const bool is_open = fit.HasFlag("not_closed") || fit.HasFlag("rows_missing");
   if (is_open && !of_a_step.empty()) {
     std::vector<double> neighbours(of_a_step.begin(), of_a_step.end());
     of_last = steps * boost::math::statistics::median(neighbours);

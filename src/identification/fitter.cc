@@ -125,10 +125,10 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   result.force_sense = attempt.prepared.force_sense;
   FillRecords(attempt, solved, result);
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
+  result.findings = FindMissingRows(attempt.prepared.records);
   const bool is_judged = attempt.depth >= Depth::kIntervals;
   if (is_judged) {
-    result.findings = FindInRecords(result.records);
-    Append(result.findings, FindMissingRows(attempt.prepared.records));
+    Append(result.findings, FindInRecords(result.records));
     Append(result.findings, FindVaryingLoads(data));
   }
   const bool any_virgin = problem.state.Any(InitialState::kVirgin);

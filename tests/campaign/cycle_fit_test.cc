@@ -144,6 +144,13 @@ TEST(CycleFitter, FlagsWhatIsWrongWithACycle) {
          }
        }},
       {"glitches", [](loop::Record& record) { record.force[40] = 1e4; }},
+      {"rows_missing",
+       [](loop::Record& record) {
+         record.time.clear();
+         for (std::size_t i = 0; i < record.size(); ++i) {
+           record.time.push_back(static_cast<double>(i < 60 ? i : i + 400));
+         }
+       }},
       {"no_loop", [](loop::Record& record) {
          for (std::size_t i = 0; i < record.size(); ++i) {
            record.force[i] = 1e7 * record.displacement[i];
