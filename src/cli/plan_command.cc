@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "cli/command.h"
 #include "core/nearest_name.h"
@@ -172,6 +173,18 @@ Plan MakePlan(const PlanOptions& options) {
   plan.wanted = ParseWanted(options.want);
   plan.expected = Expect(options, fit_options, plan.notes);
   plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
+  const models::BranchLaw& law = plan.expected.law;
+  const std::array closed = {std::tuple("slip_force", law.slip_force, 0.07 * law.slip_force),
+                             std::tuple("alpha", law.shape_exponent, 0.05)};
+  for (const auto& [name, value, most] : closed) {
+    const auto wanted = plan.wanted.find(name);
+    if (wanted == plan.wanted.end()) continue;
+    const auto& [precision, is_relative] = wanted->second;
+    if (!(precision * (is_relative ? value : 1.0) > most)) continue;
+    plan.notes.push_back(fmt::format(
+        "a fit often leaves {} open where its standard error is above {:.3g}: want less", name,
+        most));
+  }
   std::vector<double> amplitudes = options.amplitudes;
   constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
   if (amplitudes.empty()) {
