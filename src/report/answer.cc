@@ -44,6 +44,11 @@ std::string WithBlanks(std::string_view name) {
   return text;
 }
 
+std::string CauseText(const identification::Cause& cause) {
+  return fmt::format("{}, {:.0f} % of the misfit", WithBlanks(cause.code),
+                     std::min(100.0, 100 * cause.explains));
+}
+
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
   constexpr auto kSaid =
@@ -75,6 +80,8 @@ class Writer {
     if (report_.next) {
       Add("next",
           fmt::format("{}: {}", report_.next->options, NextStatement(report_, *report_.next)));
+    } else {
+      AddCause();
     }
     AddRest();
     return std::move(lines_);
@@ -340,6 +347,15 @@ class Writer {
     Add("left out", parts);
   }
 
+  /// Names what explains most of the misfit, where no term fits it and there is no next step.
+  void AddCause() {
+    constexpr double kMost = 0.5;
+    for (const identification::Cause& cause : fit_.adequacy.causes) {
+      if (!cause.term.empty() || cause.explains < kMost) continue;
+      return Add("looks like", CauseText(cause));
+    }
+  }
+
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
     for (const Finding& finding : fit_.findings) {
@@ -423,8 +439,7 @@ std::vector<Line> DetailLines(const Report& report) {
     if (!values.empty()) lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
   }
   for (const identification::Cause& cause : fit.adequacy.causes) {
-    lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", WithBlanks(cause.code),
-                                               std::min(100.0, 100 * cause.explains))});
+    lines.push_back({"looks like", CauseText(cause)});
   }
   for (const Finding& finding : fit.findings) {
     if (finding.severity != identification::Severity::kNote || IsSaidByALine(finding.code))

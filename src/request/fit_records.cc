@@ -227,13 +227,14 @@ bool LosesSlipForce(const FitResult& before, const FitResult& after, bool by_col
   return is.value < was.lower95.value_or(0.0) || is.value > was.upper95.value_or(is.value);
 }
 
-/// True if a term seems to describe the record where a cause that no term describes explains as
-/// much: the values would be quoted, and may be wrong.
+/// True if a cause that no term describes explains clearly more than a term does; or as much, where
+/// the term seems to describe the record: its values would be quoted, and may be wrong.
 bool IsRivalled(const FitResult& before, const FitResult& after) {
-  if (after.adequacy.verdict != AdequacyVerdict::kAdequate) return false;
+  constexpr double kClearly = 1.2;
+  const bool is_adequate = after.adequacy.verdict == AdequacyVerdict::kAdequate;
   const double explained = 1 - std::pow(after.rms / before.rms, 2);
   return std::ranges::any_of(before.adequacy.causes, [&](const identification::Cause& cause) {
-    return cause.term.empty() && cause.explains >= explained;
+    return cause.term.empty() && cause.explains >= (is_adequate ? 1.0 : kClearly) * explained;
   });
 }
 

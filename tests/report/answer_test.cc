@@ -380,6 +380,20 @@ TEST(Answer, NamesTheColumnsThatWereTakenForRepeats) {
   EXPECT_THAT(LineOf(input, "not tried"), StartsWith("column 6, as it moves like another"));
 }
 
+TEST(Answer, NamesACauseWithoutATermInPlaceOfANextStep) {
+  ReportInput input = Doubtful();
+  identification::Cause cause;
+  cause.code = "displacement_sensor";
+  cause.explains = 0.92;
+  input.fit.adequacy.causes = {cause};
+  EXPECT_EQ(LineOf(input, "looks like"), "displacement sensor, 92 % of the misfit");
+  input.fit.adequacy.causes.front().explains = 0.4;
+  EXPECT_EQ(LineOf(input, "looks like"), "");
+  input.fit.adequacy.causes = {cause};
+  input.next = testing::MadeStep("--terms viscous");
+  EXPECT_EQ(LineOf(input, "looks like"), "");
+}
+
 TEST(Answer, HasNoFractionAboveTheWhole) {
   ReportInput input = Doubtful();
   input.fit.adequacy.misfit_over_half_gap = 3.66;
