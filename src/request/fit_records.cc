@@ -336,7 +336,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !(before > kLeastMisfit) ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
-      fit.FindFinding("force_at_limit") != nullptr ||
+      fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
       fit.FindFinding("load_not_proportional") != nullptr || !options.terms.empty() ||
       !options.covariates.empty()) {
     return std::nullopt;
@@ -469,6 +469,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   if (const auto disproportion = FindDisproportion(asked.options, records, asked.fit)) {
     asked.fit.findings.push_back(*disproportion);
+    asked.fit.adequacy.causes.clear();
   }
   std::optional<report::NextStep> next;
   if (!request.chooses_terms) next = FindNextStep(request, asked.options, records, asked.fit);

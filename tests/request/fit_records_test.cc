@@ -135,6 +135,7 @@ TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   EXPECT_NEAR(*found->Number("least"), 0.275, 0.003);
   EXPECT_NEAR(*found->Number("most"), 0.4, 0.004);
   EXPECT_FALSE(made.next);
+  EXPECT_THAT(made.fit.adequacy.causes, IsEmpty());
 }
 
 TEST(FitRecords, RefusesAForceBesideATorque) {
