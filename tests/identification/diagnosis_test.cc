@@ -88,11 +88,18 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
 TEST(FindMissingRows, NamesAGapOfAQuarterOfACycleAndNoUnevenSampling) {
   loop::PreparedRecord prepared;
   std::vector<double> time;
-  for (std::size_t i = 0; i < 400; ++i) time.push_back(0.01 * static_cast<double>(i));
+  std::vector<double> displacement;
+  for (std::size_t i = 0; i < 400; ++i) {
+    time.push_back(0.01 * static_cast<double>(i));
+    displacement.push_back(std::abs(50.0 - static_cast<double>(i % 100)));
+  }
   prepared.reversals = {50, 100, 150, 200, 250, 300, 350};  // cycles of a second
   prepared.record.time = time;
+  prepared.record.displacement = displacement;
   EXPECT_THAT(FindMissingRows(std::span(&prepared, 1)), IsEmpty());
   for (std::size_t i = 220; i < 400; ++i) time[i] += 0.4;
+  EXPECT_THAT(FindMissingRows(std::span(&prepared, 1)), IsEmpty()) << "a pause";
+  displacement[219] += 20;
   const std::vector<Finding> found = FindMissingRows(std::span(&prepared, 1));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "rows_missing");

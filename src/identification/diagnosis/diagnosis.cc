@@ -57,19 +57,27 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
 std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records) {
   constexpr double kLong = 0.25;   // of a cycle: where it turned may not be seen
   constexpr double kMeans = 10.0;  // of the times between rows
+  constexpr double kAway = 5.0;    // steps of the displacement: a pause goes on where it began
   std::vector<Finding> findings;
   for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::span<const double> displacement = records[r].record.displacement;
     const std::span<const double> time = records[r].record.time;
     if (time.size() < 2) continue;
     std::size_t widest = 1;
+    double travel = 0.0;
     for (std::size_t i = 1; i < time.size(); ++i) {
       if (time[i] - time[i - 1] > time[widest] - time[widest - 1]) widest = i;
+      travel += std::abs(displacement[i] - displacement[i - 1]);
     }
     const double gap = time[widest] - time[widest - 1];
     const double rest = time.back() - time.front() - gap;
     const auto others = static_cast<double>(time.size() - 2);
     const double strokes = static_cast<double>(records[r].reversals.size()) + 1;
-    if (!(gap > kLong * 2 * rest / strokes) || !(gap * others > kMeans * rest)) continue;
+    const double away = std::abs(displacement[widest] - displacement[widest - 1]);
+    if (!(gap > kLong * 2 * rest / strokes) || !(gap * others > kMeans * rest) ||
+        !(away * others > kAway * (travel - away))) {
+      continue;
+    }
     findings.push_back(
         OfRecord(r, records.size(),
                  {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest - 1]}}}));

@@ -22,7 +22,8 @@ namespace mindahl::identification {
 /// whatever is fitted. Numbers of a record count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 
-/// `rows_missing` where time jumps by a quarter of a cycle or more: turns in it are not seen.
+/// `rows_missing` where time jumps by a quarter of a cycle or more, and the displacement with it:
+/// turns in it are not seen.
 /// Numbers: gap and from, in seconds, and record of several.
 std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records);
 
