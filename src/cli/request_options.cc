@@ -345,8 +345,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
             "'N mm'",
             "COL");
   group.Add("--time", columns.time, "time column, likewise; optional", "COL");
-  group.Add("--normal-load-column", columns.normal_load, "normal load column, likewise; optional",
-            "COL");
+  group.Add("--normal-load-column", columns.normal_load,
+            "normal load column, likewise; none: leave it out", "COL");
   group.Add("--sample-rate", columns.sample_rate, "samples a second [Hz], where there is no time",
             "HZ");
   group.Add("--encoding", columns.encoding,

@@ -136,7 +136,11 @@ class RoleAssigner {
       : names_(names), file_(names.table().file), notes_(notes), taken_(names.size()) {}
 
   std::vector<Quantity> Assign(const RecordColumns& asked) && {
-    for (const Role role : kRolesOfRecord) TakeGiven(asked.*RulesOf(role).given, role);
+    const bool has_load = asked.normal_load != "none";
+    for (const Role role : kRolesOfRecord) {
+      const bool is_none = role == Role::kNormalLoad && !has_load;
+      TakeGiven(is_none ? "" : asked.*RulesOf(role).given, role);
+    }
     const bool finds_displacement = IsMissing(Role::kDisplacement);
     const bool finds_force = IsMissing(Role::kForce);
     FindPair();
@@ -149,8 +153,10 @@ class RoleAssigner {
     for (const std::string& covariate : asked.covariates) {
       taken[names_.Chosen(covariate, Role::kOther)] = true;
     }
-    TakeFound(Role::kNormalLoad, taken);
-    TakeLoad(taken);
+    if (has_load) {
+      TakeFound(Role::kNormalLoad, taken);
+      TakeLoad(taken);
+    }
     TakeLeft();
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement);

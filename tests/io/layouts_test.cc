@@ -236,6 +236,14 @@ TEST(Units, OfLinesAboveTheHeaderAreNotPassedOver) {
   EXPECT_EQ(Read(text, Choose("[mm]", "[kN]")).record.force.front(), 2e3);
 }
 
+TEST(Load, IsLeftOutWhereNoneIsAskedFor) {
+  const std::string text = "x [mm],F [N],Normal load [N]\n0,1,50\n1,3,51\n0,-1,52\n";
+  EXPECT_EQ(Read(text).record.normal_load.size(), 3U);
+  RecordColumns columns;
+  columns.normal_load = "none";
+  EXPECT_TRUE(Read(text, columns).record.normal_load.empty());
+}
+
 TEST(Load, ThatIsNegativeOrTared) {
   const RecordFile file = Read("Normal force [N],F [N],x [mm]\n-50,1,1\n-51,2,2\n-50,1,1\n");
   EXPECT_EQ(file.record.normal_load, (Numbers{50, 51, 50}));

@@ -23,7 +23,7 @@ struct RecordColumns {
   std::string displacement{};
   std::string force{};
   std::string time{};
-  std::string normal_load{};
+  std::string normal_load{};                 ///< "none": no column, whatever names say
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
   std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
   std::optional<double> sample_rate = {};    // [Hz], of a file without a time
