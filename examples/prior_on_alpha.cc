@@ -59,7 +59,7 @@ int main() {
   for (const double x : displacement) force.push_back(contact.Move(x) + noise(generator));
 
   identification::FitOptions options;
-  options.initial_state = models::InitialState::kVirgin;
+  options.initial_states = {models::InitialState::kVirgin};
   options.function_tolerance = 1e-16;
   const loop::RecordView record(displacement, force);
   identification::Fitter fitter(options);

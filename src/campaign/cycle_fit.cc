@@ -45,7 +45,7 @@ constexpr std::array kFlags = {
 };
 
 FitOptions OfSteadyCycles(FitOptions options) {
-  if (!options.initial_state) options.initial_state = models::InitialState::kSteady;
+  if (options.initial_states.empty()) options.initial_states = {models::InitialState::kSteady};
   return options;
 }
 

@@ -43,8 +43,7 @@ ProblemOfFit::ProblemOfFit(std::span<const loop::RecordView> records, FitOptions
     if (own == fit.ResponseNoise() || !(own > 0)) continue;
     for (double& weight : data.records[r].root_weight) weight *= fit.ResponseNoise() / own;
   }
-  const RecordStates state(std::move(states));
-  problem = Problem{&data, options.model, state, Parameters(data, options, state)};
+  problem = Problem{&data, options.model, states, Parameters(data, options, states)};
   for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
     const Parameter& parameter = problem->parameters[p];
     const ParameterEstimate* const estimate = fit.Find(problem->parameters.NameOf(p));

@@ -101,7 +101,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
                     : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
-    fit.initial_state = solved.best.problem.state.Of(r);
+    fit.initial_state = solved.best.problem.states[r];
     fit.response_noise =
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
     if (data.is_forced()) fit.displacement_noise = noise.force * data.length;
@@ -131,8 +131,8 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
     Append(result.findings, FindInRecords(result.records));
     Append(result.findings, FindVaryingLoads(data));
   }
-  const bool any_virgin = problem.state.Any(InitialState::kVirgin);
-  result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;
+  result.initial_state =
+      AnyIsVirgin(problem.states) ? InitialState::kVirgin : InitialState::kSteady;
   result.solver = solution.report;
   result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {

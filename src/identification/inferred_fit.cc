@@ -161,7 +161,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
   if (is_judged) {
-    if (!options.initial_state && options.initial_states.empty()) {
+    if (options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
     Append(result.findings, FindFewPlaces(problem, thresholds));

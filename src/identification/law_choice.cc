@@ -164,14 +164,14 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
     return record.initial_state == InitialState::kSteady;
   });
-  const bool is_open = !options.initial_state && options.initial_states.empty();
+  const bool is_open = options.initial_states.empty();
   const bool is_one_curve = is_steady && HasOneAmplitude(records, data, options.thresholds);
   if (is_one_curve) {
     const auto starts_inside = [&](const ScaledRecord& record) {
       return StartsInside(record, options.thresholds);
     };
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
-    others.initial_state = InitialState::kVirgin;
+    others.initial_states = {InitialState::kVirgin};
   }
   FitResult other;
   try {

@@ -93,7 +93,7 @@ Trial TrialOf(Record record, const Case& drawn, bool by_dahl) {
   }
   FitOptions options;
   options.model = models::FindFrictionModel("dahl");
-  options.initial_state = models::InitialState::kSteady;
+  options.initial_states = {models::InitialState::kSteady};
   return {std::move(record), options, models::DahlEquivalent(law, drawn.excitation.amplitude)};
 }
 
@@ -132,7 +132,7 @@ Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
 /// unlike an error over a standard error it also holds where the likelihood is not a parabola.
 double StandardizedDistance(const Trial& trial, const FitResult& fit) {
   FitOptions options = trial.options;
-  options.initial_state = fit.initial_state;
+  options.initial_states = {fit.initial_state};
   options.fixed = {{"sigma", trial.truth.tangential_stiffness},
                    {"alpha", trial.truth.shape_exponent},
                    {"slip_force", trial.truth.slip_force}};

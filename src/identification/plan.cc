@@ -102,7 +102,7 @@ double LawEvidence(const loop::Record& record, const Expectation& expected,
   if (protocol.initial_state == InitialState::kSteady) return 0.0;
   FitOptions options;
   options.model = models::FindFrictionModel("dahl");
-  options.initial_state = protocol.initial_state;
+  options.initial_states = {protocol.initial_state};
   if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
   const FitResult other = Fit({&record, 1}, options, Depth::kEstimate);
   double slopes = 0.0;  // Σ(dT/dδ)²
@@ -125,7 +125,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   RequirePlan(expected, protocol, given);
   const loop::Record record = LoopOf(expected, protocol);
   FitOptions options = given;
-  options.initial_state = protocol.initial_state;
+  options.initial_states = {protocol.initial_state};
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
@@ -136,8 +136,8 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
-  const Problem problem{&data, options.model, protocol.initial_state,
-                        Parameters(data, options, protocol.initial_state)};
+  const Problem problem{&data, options.model, options.initial_states,
+                        Parameters(data, options, options.initial_states)};
   Solution solution = SolutionAt(expected, problem.parameters);
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;

@@ -17,30 +17,22 @@ namespace {
 
 using models::InitialState;
 
+/// Returns a state for all records.
+std::vector<InitialState> ForAll(const Attempt& attempt, InitialState state) {
+  return std::vector(attempt.data.records.size(), state);
+}
+
 /// Returns the initial states that the options name; nothing where both have to be tried.
-std::optional<RecordStates> GivenState(const Attempt& attempt) {
-  if (!attempt.options.initial_states.empty()) return RecordStates(attempt.options.initial_states);
-  if (attempt.options.initial_state) return attempt.options.initial_state;
+std::vector<InitialState> GivenStates(const Attempt& attempt) {
+  const std::vector<InitialState>& given = attempt.options.initial_states;
+  if (!given.empty()) return given.size() == 1 ? ForAll(attempt, given.front()) : given;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
   });
-  if (unloaded_is_given) return InitialState::kVirgin;
-  if (std::ranges::none_of(attempt.data.records, &ScaledRecord::Turns)) {
-    return InitialState::kVirgin;
+  if (unloaded_is_given || std::ranges::none_of(attempt.data.records, &ScaledRecord::Turns)) {
+    return ForAll(attempt, InitialState::kVirgin);
   }
-  return std::nullopt;
-}
-
-/// Returns the states of a candidate's records with one of them turned to the other.
-RecordStates Flipped(const Problem& problem, std::size_t record) {
-  std::vector<InitialState> states;
-  states.reserve(problem.data->records.size());
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    states.push_back(problem.state.Of(r));
-  }
-  states[record] =
-      states[record] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
-  return RecordStates(std::move(states));
+  return {};
 }
 
 /// Returns θ of a solution for a problem that holds other origins; one that it has free starts
@@ -72,7 +64,10 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
     any = false;
     for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
       const Candidate& from = best ? *best : pure;
-      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r));
+      std::vector<InitialState> states = from.problem.states;
+      states[r] =
+          states[r] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
+      Candidate trial(attempt.data, attempt.options, states);
       const std::vector<double> start = ThetaFor(trial.problem, from.problem, from.solution);
       attempt.solver.Bind(trial.problem);
       attempt.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
@@ -90,8 +85,8 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   ThinnedRecords thin(attempt.data);
-  const auto make = [&](const RecordStates& state) {
-    Candidate candidate(attempt.data, options, state);
+  const auto make = [&](const std::vector<InitialState>& states) {
+    Candidate candidate(attempt.data, options, states);
     RequireEnoughSamples(candidate.problem, attempt.prepared);
     return candidate;
   };
@@ -104,14 +99,15 @@ SolvedFit FitBestState(const Attempt& attempt) {
     Descend(candidate, options, attempt.solver);
     SearchBesideMinimum(candidate, options, attempt.solver);
   };
-  if (const std::optional<RecordStates> given = GivenState(attempt)) {
-    Candidate candidate = make(*given);
+  const std::vector<InitialState> given = GivenStates(attempt);
+  if (!given.empty()) {
+    Candidate candidate = make(given);
     find_starts(candidate);
     descend(candidate);
     return {.best = std::move(candidate)};
   }
-  Candidate virgin = make(InitialState::kVirgin);
-  Candidate steady = make(InitialState::kSteady);
+  Candidate virgin = make(ForAll(attempt, InitialState::kVirgin));
+  Candidate steady = make(ForAll(attempt, InitialState::kSteady));
   const double virgin_cost = find_starts(virgin);
   const double virgin_look =
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;

@@ -67,7 +67,7 @@ Problem TermScores::ProblemOf(const FitOptions& options) const {
   FitOptions with_columns = options;
   with_columns.covariates = covariates_;
   with_columns.start.clear();
-  return {&data_, options.model, state_, Parameters(data_, with_columns, state_)};
+  return {&data_, options.model, states_, Parameters(data_, with_columns, states_)};
 }
 
 /// θ of a problem at the fit's solution, with terms that the fit does not have without effect.
@@ -135,7 +135,7 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
 
 void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
                           std::span<const TermChoice> choices) {
-  state_ = fit.initial_state;
+  states_.assign(data_.records.size(), fit.initial_state);
   values_.clear();
   free_.clear();
   for (const ParameterEstimate& estimate : fit.parameters) {

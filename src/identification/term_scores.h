@@ -77,7 +77,7 @@ class TermScores {
   // The fit from which the steps are taken:
   std::map<std::string, double> values_;  // of its parameters
   std::set<std::string> free_;            // of these
-  models::InitialState state_ = models::InitialState::kSteady;
+  std::vector<models::InitialState> states_;
   double effective_samples_ = 1.0;
   std::vector<std::string> names_;  // of those that are inside their bounds
   Eigen::VectorXd freed_;           // what these leave of the residuals

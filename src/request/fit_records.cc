@@ -141,8 +141,8 @@ void KeepTests(const FitRequest& request, std::vector<RecordFile>& records, FitO
     io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
-  if (all_cycled && !options.initial_state && options.initial_states.empty()) {
-    options.initial_state = models::InitialState::kSteady;
+  if (all_cycled && options.initial_states.empty()) {
+    options.initial_states = {models::InitialState::kSteady};
   }
 }
 
@@ -382,7 +382,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
   if (!request.chooses_terms) return "";
   FitOptions of_head = options;
   // The head is fitted like its cycles: an asymmetry is then an offset of each.
-  of_head.initial_state = models::InitialState::kSteady;
+  of_head.initial_states = {models::InitialState::kSteady};
   const identification::TermSelection selection =
       identification::SelectTerms(std::span(&head, 1), of_head);
   options.terms = selection.options.terms;

@@ -85,7 +85,7 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
   }
   const std::string_view origin =
       fit.response() == loop::Channel::kForce ? "displacement_offset" : "force_offset";
-  if (term->name == origin && fit.initial_state == models::InitialState::kSteady) {
+  if (term->name == origin && fit.initial_states == std::vector{models::InitialState::kSteady}) {
     refuse("that of a steady loop is its centre; use --initial-state virgin");
   }
   const bool is_of_displacement = term->name == kDriftOfDisplacement;

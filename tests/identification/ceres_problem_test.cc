@@ -28,7 +28,7 @@ Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, dou
 
 FitOptions OptionsOf(const std::string& model, const std::string& term) {
   FitOptions options{.model = &Model(model),
-                     .initial_state = InitialState::kVirgin,
+                     .initial_states = {InitialState::kVirgin},
                      .preparation = {.force_sense = 1}};
   if (!term.empty()) options.terms = {term};
   // The exponent of a force of the speed, or of a slip force of the speed, needs its factor.

@@ -56,7 +56,7 @@ TEST(ImposedForceFit, RecoversVirginAndSteadyLoopsByTheirOwnLaw) {
     FitOptions options = OfDisplacement(model);
     const Record loop = ForcedLoop(law, 0.9, model);
     EXPECT_TRUE(Recovers(FitOne(loop, options), law, testing::kNoiseFree));
-    options.initial_state = InitialState::kSteady;
+    options.initial_states = {InitialState::kSteady};
     const FitResult fit = FitOne(From(loop, kSamplesPerCycle), options);
     EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
     EXPECT_EQ(fit.Find("force_offset")->status, ParameterStatus::kFixed);

@@ -32,7 +32,7 @@ Deviations Scatter(const Expectation& expected, const Protocol& protocol, int lo
   const Record clean =
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), expected.law, displacement,
                                        {.state = protocol.initial_state}, expected.rig));
-  FitOptions options{.initial_state = protocol.initial_state,
+  FitOptions options{.initial_states = {protocol.initial_state},
                      .preparation = {.displacement_noise = expected.displacement_noise},
                      .force_noise = expected.force_noise};
   if (std::isfinite(expected.rig.stiffness))

@@ -65,7 +65,7 @@ TEST(JointFit, RecordsOfOneNoiseArePooled) {
 
 TEST(JointFit, KnownNoiseIsThatOfAllRecords) {
   const FitResult fit =
-      Fit(Noisy(kQuiet, kLoud), {.initial_state = InitialState::kVirgin, .force_noise = kLoud});
+      Fit(Noisy(kQuiet, kLoud), {.initial_states = {InitialState::kVirgin}, .force_noise = kLoud});
   EXPECT_DOUBLE_EQ(fit.records[0].response_noise, kLoud);
 }
 
@@ -162,7 +162,7 @@ TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsKnown) {
   constexpr double kNoise = 0.02 * kReach;
   ExpectHonest(Measure(
       [](const Record& clean, Generator& generator) { return WithNoise(clean, kNoise, generator); },
-      {.initial_state = InitialState::kVirgin, .preparation = {.displacement_noise = kNoise}}));
+      {.initial_states = {InitialState::kVirgin}, .preparation = {.displacement_noise = kNoise}}));
 }
 
 TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsFound) {

@@ -30,7 +30,8 @@ class Stages {
         views(records.begin(), records.end()),
         prepared(loop::Prepare(views, options.preparation)),
         data(ScaledRecordsOf(prepared, options)),
-        problem{&data, options.model, state, identification::Parameters(data, options, state)} {}
+        problem(
+            identification::Candidate(data, options, std::vector(records.size(), state)).problem) {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
                   models::InitialState state = models::InitialState::kVirgin)
       : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
@@ -49,7 +50,7 @@ class Stages {
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
     identification::ThinnedRecords thin(data);
-    identification::Candidate candidate(data, options, problem.state);
+    identification::Candidate candidate(data, options, problem.states);
     identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
                                  solver);
     identification::Descend(candidate, options, solver);

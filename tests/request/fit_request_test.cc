@@ -49,7 +49,9 @@ using Change = std::function<void(FitRequest&)>;
 TEST(FitRequest, RefusesAStartOfWhatIsNotFittedWithItsReason) {
   const Change as_it_is = [](FitRequest&) {};
   const Change forced = [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; };
-  const Change steady = [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; };
+  const Change steady = [](FitRequest& r) {
+    r.fit.initial_states = {models::InitialState::kSteady};
+  };
   for (const auto& [name, change, reason] :
        std::vector<std::tuple<std::string, Change, std::string>>{
            {"alpha", as_it_is, ""},

@@ -335,9 +335,10 @@ Record NoisyRecord(const Scenario& scenario, double load, const Record& clean, N
 
 FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
-  options.initial_state =
-      scenario.is_steady ? models::InitialState::kSteady : models::InitialState::kVirgin;
-  if (scenario.finds_state) options.initial_state.reset();
+  if (!scenario.finds_state) {
+    options.initial_states = {scenario.is_steady ? models::InitialState::kSteady
+                                                 : models::InitialState::kVirgin};
+  }
   options.model = models::FindFrictionModel(scenario.model);
   if (IsForced(scenario) && !scenario.fits_force) {
     options.preparation.excitation = loop::Channel::kForce;

@@ -29,11 +29,8 @@ struct FitOptions {
   /// One of FrictionModels().
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
-  /// Empty: both are fitted and the smaller AICc on effective samples is kept.
-  std::optional<models::InitialState> initial_state{};
-
-  /// The state of each record, in the place of initial_state; empty: that of all. Where neither is
-  /// given, records that differ are found.
+  /// That of every record, or one for all. Empty: both are fitted, the smaller AICc on effective
+  /// samples is kept, and records that differ are found.
   std::vector<models::InitialState> initial_states{};
 
   /// How the records are read, and which samples count.

@@ -244,7 +244,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
     const double unloaded = solution.theta[offset];
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
     const double away = std::abs(record.excitation().front() - unloaded);
-    const bool starts_unloaded = problem.state.Of(r) == models::InitialState::kVirgin &&
+    const bool starts_unloaded = problem.states[r] == models::InitialState::kVirgin &&
                                  away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
   }

@@ -282,7 +282,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
   const std::vector<Sampling> samplings = SamplingsOf(data);
   if (data.is_forced()) return PlacesUnderForce(problem, theta, response, samplings);
   const LawPoint point = PointAt(problem, theta);
-  const bool tells_asymmetry = problem.state.Any(models::InitialState::kVirgin) &&
+  const bool tells_asymmetry = AnyIsVirgin(problem.states) &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies;
   std::vector<double> force(problem.size());
@@ -340,7 +340,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
                             .gain = sensitivity.gain[b]});
     }
     FollowBranches(*problem.model, of);
-    if (problem.state.Of(r) == models::InitialState::kSteady) {
+    if (problem.states[r] == models::InitialState::kSteady) {
       of.extreme = SteadyExtreme(problem, point, record);
     }
     begin += record.size();

@@ -246,7 +246,7 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
-                       const RecordStates& state)
+                       std::span<const models::InitialState> states)
     : records_(data.records.size()), origin_(OriginId(data.excitation)) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
@@ -265,16 +265,17 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     for (const Term& term : terms) {
       if (term.scope != Scope::kRecord) continue;
       Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.id == origin_ && state.Of(r) == models::InitialState::kSteady) {
+      if (term.id == origin_ && states[r] == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
   }
-  ApplyOptions(options, state, data.prior_noise);
+  const bool all_are_steady = !AnyIsVirgin(states);
+  ApplyOptions(options, all_are_steady, data.prior_noise);
   RequireNeededTerms();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
-    if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
+    if (all_are_steady) HoldConfoundedAsymmetry();
     if (data.load_varies) KeepShapeBelowOne(options);
   }
   for (const Parameter& parameter : parameters_) {
@@ -412,8 +413,7 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options, const RecordStates& state,
-                              double prior_noise) {
+void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name, options.response());
     if (term == nullptr ||
@@ -447,7 +447,7 @@ void Parameters::ApplyOptions(const FitOptions& options, const RecordStates& sta
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->id == origin_ && state.AreAll(models::InitialState::kSteady)) {
+    if (parameter.term->id == origin_ && all_are_steady) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",

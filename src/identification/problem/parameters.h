@@ -16,27 +16,10 @@
 
 namespace mindahl::identification {
 
-/// The initial state of each record of a fit: one of all, or one a record.
-class RecordStates {
- public:
-  RecordStates(models::InitialState all) : states_{all} {}
-  /// @param of_records  not empty
-  explicit RecordStates(std::vector<models::InitialState> of_records)
-      : states_(std::move(of_records)) {}
-
-  [[nodiscard]] models::InitialState Of(std::size_t record) const {
-    return states_.size() == 1 ? states_.front() : states_[record];
-  }
-  [[nodiscard]] bool Any(models::InitialState state) const {
-    return std::ranges::find(states_, state) != states_.end();
-  }
-  [[nodiscard]] bool AreAll(models::InitialState state) const {
-    return std::ranges::count(states_, state) == std::ranges::ssize(states_);
-  }
-
- private:
-  std::vector<models::InitialState> states_;
-};
+/// True if a record starts from an unloaded contact.
+inline bool AnyIsVirgin(std::span<const models::InitialState> states) {
+  return std::ranges::find(states, models::InitialState::kVirgin) != states.end();
+}
 
 /// Returns the period, in units of the displacement, with which the forces of both directions vary
 /// most over the position: that of the largest peak of their spectra together, one phase for each
@@ -115,8 +98,10 @@ inline std::string_view OriginTerm(loop::Channel excitation) {
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
  public:
+  /// @param states  of every record
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
-  Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state);
+  Parameters(const ScaledRecords& data, const FitOptions& options,
+             std::span<const models::InitialState> states);
 
   [[nodiscard]] std::size_t size() const { return parameters_.size(); }
   [[nodiscard]] const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
@@ -179,7 +164,7 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyOptions(const FitOptions& options, const RecordStates& state, double prior_noise);
+  void ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise);
   void ApplyPriors(const FitOptions& options, double noise);
   void RequireNeededTerms() const;
   void RequireOneMotion() const;

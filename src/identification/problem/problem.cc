@@ -127,7 +127,7 @@ void Response::Bind(const Problem& problem) {
     const ScaledRecord& record = problem.data->records[r];
     if (record.load_ratio.empty() || !HasPathAsymmetry(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
-                              problem.state.Of(r), histories_[r]);
+                              problem.states[r], histories_[r]);
   }
   slip_varies_ =
       std::ranges::any_of(std::array{TermId::kSlipSlope, TermId::kSlipCurvature, TermId::kSlipSpeed,
@@ -142,7 +142,7 @@ void Response::Bind(const Problem& problem) {
 }
 
 models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
-  const models::InitialState state = problem_->state.Of(r);
+  const models::InitialState state = problem_->states[r];
   const bool virgin = state == models::InitialState::kVirgin;
   return {.state = state,
           .unloaded_displacement = virgin ? theta[problem_->parameters.PositionOfOrigin(r)] : 0.0,

@@ -23,7 +23,7 @@ namespace mindahl::identification {
 struct Problem {
   const ScaledRecords* data;
   const models::FrictionModel* model;
-  RecordStates state;
+  std::vector<models::InitialState> states;  // of the records
   Parameters parameters;
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }

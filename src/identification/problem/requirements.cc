@@ -107,9 +107,10 @@ void Validate(const FitOptions& options) {
 
 void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
   const std::size_t states = options.initial_states.size();
-  if (states != 0 && states != data.records.size()) {
-    throw InvalidArgument(fmt::format("{} initial states for {} records: give one a record", states,
-                                      data.records.size()));
+  if (states > 1 && states != data.records.size()) {
+    throw InvalidArgument(
+        fmt::format("{} initial states for {} records: give one for all, or one a record", states,
+                    data.records.size()));
   }
   const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(

@@ -57,7 +57,7 @@ double LeastLogSlipForce(const Problem& problem) {
   constexpr double kShortOfSlip = 1e-9;
   double largest = 0.0;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    if (problem.state.Of(r) != models::InitialState::kSteady) continue;
+    if (problem.states[r] != models::InitialState::kSteady) continue;
     const ScaledRecord& record = problem.data->records[r];
     const auto [low, high] = std::ranges::minmax(record.excitation());
     largest = std::max(largest, (high - low) / 2);

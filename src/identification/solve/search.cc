@@ -40,7 +40,7 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
   const bool has_kinks = HasKinks(candidate.problem.parameters);
   const ScaledRecords& looked_at =
       is_enough && !has_covariate && !has_kinks ? thin : *candidate.problem.data;
-  const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
+  const Problem problem{&looked_at, candidate.problem.model, candidate.problem.states,
                         candidate.problem.parameters};
   candidate.starts = FindStarts(problem, options, rival, solver);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()

@@ -14,8 +14,9 @@ namespace mindahl::identification {
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state)
-      : problem{&data, options.model, state, Parameters(data, options, state)} {}
+  Candidate(const ScaledRecords& data, const FitOptions& options,
+            const std::vector<models::InitialState>& states)
+      : problem{&data, options.model, states, Parameters(data, options, states)} {}
 
   Problem problem;
   std::vector<StartingPoint> starts = {};

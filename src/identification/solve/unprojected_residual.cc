@@ -52,7 +52,7 @@ UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit)
   for (const std::size_t p : parameters.reported()) {
     const std::size_t record = parameters[p].record;
     const bool is_steady_origin = p == parameters.PositionOfOrigin(record) &&
-                                  problem.state.Of(record) == models::InitialState::kSteady;
+                                  problem.states[record] == models::InitialState::kSteady;
     if (!is_steady_origin) blocks_.push_back(p);
   }
   for (const ScaledRecord& record : problem.data->records) {
