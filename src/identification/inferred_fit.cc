@@ -94,16 +94,16 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
 void ConsiderRig(const Attempt& attempt, const Estimates& fitted, FitResult& result) {
   const auto rig = TryRig(fitted, result.parameters[kShape], attempt.options, attempt.solver);
   if (!rig) return;
-  result.parameters = IncludeRig(*rig, attempt.options.thresholds, std::move(result.parameters));
+  result.parameters = IncludeRival(*rig, attempt.options.thresholds, std::move(result.parameters));
   result.findings.push_back(
       {.code = "shape_or_rig",
-       .numbers = {{"rig_stiffness", rig->rig_stiffness}, {"alpha", result.law.shape_exponent}}});
+       .numbers = {{"rig_stiffness", rig->rig.stiffness}, {"alpha", result.law.shape_exponent}}});
 }
 
 /// Includes the contact of the other initial state, where the record does not distinguish it.
-void ConsiderOtherState(const Rival& other, FitResult& result) {
+void ConsiderOtherState(const Rival& other, const Thresholds& thresholds, FitResult& result) {
   const ParameterEstimates before = result.parameters;
-  result.parameters = IncludeRival(other, std::move(result.parameters));
+  result.parameters = IncludeRival(other, thresholds, std::move(result.parameters));
   const auto& [lower, upper] = std::pair(before[kSlipForce].lower95, before[kSlipForce].upper95);
   const double slip_force = other.law.slip_force;
   if (!lower || (slip_force >= *lower && !(slip_force > upper.value_or(slip_force)))) return;
@@ -151,7 +151,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
-  if (solved.other_state) ConsiderOtherState(*solved.other_state, result);
+  if (solved.other_state) ConsiderOtherState(*solved.other_state, thresholds, result);
   if (!problem.data->is_forced()) CoverSteps(attempt, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);

@@ -171,8 +171,8 @@ const std::vector<Row>& Cases() {
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {
            const ParameterEstimates before = Made().parameters;
-           return IncludeRig({1e6, {{ratio * 1e6, 1.0 / 3, 1.0}}}, t, before)[kShape].lower95 !=
-                  before[kShape].lower95;
+           const Rival in_rig{{ratio * 1e6, 1.0 / 3, 1.0}, 1.0, {1e6}};
+           return IncludeRival(in_rig, t, before)[kShape].lower95 != before[kShape].lower95;
          };
          return widens_alpha(kBelow * 30) && !widens_alpha(kAbove * 30);
        }},

@@ -16,7 +16,11 @@ Rival RivalAt(const Parameters& parameters, std::span<const double> theta) {
   return {parameters.LawAt(theta), parameters.LoadExponentAt(theta)};
 }
 
-ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameters) {
+ParameterEstimates IncludeRival(const Rival& rival, const Thresholds& thresholds,
+                                ParameterEstimates parameters) {
+  if (rival.law.tangential_stiffness >= thresholds.rigid_beside_rig * rival.rig.stiffness) {
+    return parameters;
+  }
   for (ParameterEstimate& estimate : parameters) {
     const auto include = [&](double lower, double upper) {
       Include(estimate, {.lower = lower, .upper = upper});
@@ -35,8 +39,8 @@ ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameter
   return parameters;
 }
 
-std::optional<RigAlternative> TryRig(const Estimates& fitted, const ParameterEstimate& shape,
-                                     const FitOptions& options, Solver& solver) {
+std::optional<Rival> TryRig(const Estimates& fitted, const ParameterEstimate& shape,
+                            const FitOptions& options, Solver& solver) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
   const Noise& noise = fitted.noise();
@@ -67,15 +71,9 @@ std::optional<RigAlternative> TryRig(const Estimates& fitted, const ParameterEst
   const double loss = Evidence(noise.samples, samples * fitted.WhiteShare(kShape))
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
-  return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-                        .contact = RivalAt(sprung.problem.parameters, solution.theta)};
-}
-
-ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
-                              ParameterEstimates parameters) {
-  const double stiffness = rig.contact.law.tangential_stiffness;
-  if (stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) return parameters;
-  return IncludeRival(rig.contact, std::move(parameters));
+  Rival rival = RivalAt(sprung.problem.parameters, solution.theta);
+  rival.rig = sprung.problem.parameters.RigAt(solution.theta);
+  return rival;
 }
 
 }  // namespace mindahl::identification
