@@ -1,7 +1,12 @@
 #pragma once
 
-#include "mindahl/identification/fit_options.h"
-#include "mindahl/identification/fit_result.h"
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
 
 namespace mindahl::identification {
 
@@ -23,6 +28,32 @@ inline void StartFrom(const FitResult& fit, FitOptions& options) {
       options.start[parameter.name] = parameter.value;
     }
   }
+}
+
+/// Samples [begin, end) of a record.
+struct SampleRange {
+  std::size_t record = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// Fits at Depth::kEstimate without some samples, which still make history.
+/// @returns empty where it does not converge, has too few samples or a rig beyond what it can see
+inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out,
+                                           std::span<const loop::RecordView> records,
+                                           FitOptions options) {
+  std::vector<std::vector<bool>>& masks = options.preparation.held_out;
+  masks.resize(records.size());
+  for (std::size_t r = 0; r < records.size(); ++r) masks[r].resize(records[r].size());
+  for (const auto& [record, begin, end] : held_out) {
+    for (std::size_t i = begin; i < end; ++i) masks[record][i] = true;
+  }
+  try {
+    FitResult fit = Fitter(std::move(options)).Fit(records, Depth::kEstimate);
+    if (fit.converged) return fit;
+  } catch (const InvalidArgument&) {
+  }
+  return std::nullopt;
 }
 
 }  // namespace mindahl::identification

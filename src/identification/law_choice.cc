@@ -51,25 +51,15 @@ bool BeginsLoaded(const ScaledRecord& record) {
   return std::abs(record.force.front() - (low + high) / 2) > kUnloaded * (high - low) / 2;
 }
 
-/// Fits a law without what lies before the first turns of records that begin loaded.
-/// @returns empty where that fails
-std::optional<FitResult> FitWithoutPast(std::span<const loop::RecordView> records,
-                                        FitOptions options, const ScaledRecords& data,
-                                        const FitResult& fit) {
-  std::vector<std::vector<bool>>& held_out = options.preparation.held_out;
-  held_out.resize(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    held_out[r].resize(records[r].size());
+/// Returns what lies before the first turns of records that begin loaded.
+std::vector<SampleRange> UnknownPast(const ScaledRecords& data, const FitResult& fit) {
+  std::vector<SampleRange> past;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::vector<std::size_t>& reversals = fit.records[r].reversals;
     if (reversals.empty() || !BeginsLoaded(data.records[r])) continue;
-    std::fill_n(held_out[r].begin(), reversals.front(), true);
+    past.push_back({r, 0, reversals.front()});
   }
-  try {
-    FitResult without = Fitter(options).Fit(records, Depth::kEstimate);
-    if (without.converged) return without;
-  } catch (const InvalidArgument&) {  // too few samples
-  }
-  return std::nullopt;
+  return past;
 }
 
 /// Returns the options of a fit of the other law, from that of the same steady loop. α stays as it
@@ -202,8 +192,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     if (HasOneAmplitude(records, data, options.thresholds)) return choice;
     FitOptions same = options;
     StartFrom(fit, same);
-    const auto without = FitWithoutPast(records, std::move(same), data, fit);
-    const auto other_without = FitWithoutPast(records, std::move(others), data, fit);
+    const std::vector<SampleRange> past = UnknownPast(data, fit);
+    const auto without = FitWithout(past, records, std::move(same));
+    const auto other_without = FitWithout(past, records, std::move(others));
     if (!without || !other_without) return choice;
     delta = criterion(*other_without) - criterion(*without);
   }

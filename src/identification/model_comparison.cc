@@ -74,20 +74,13 @@ const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
   return best;
 }
 
-/// A closed cycle, from one reversal to the next but one: samples [begin, end).
-struct HeldOutCycle {
-  std::size_t record = 0;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-/// Returns the cycles of which samples count. A single one of a record is none: without it nothing
-/// of the kind would be left to fit.
-std::vector<HeldOutCycle> CyclesOf(const FitResult& fit) {
-  std::vector<HeldOutCycle> cycles;
+/// Returns the closed cycles, from one reversal to the next but one, of which samples count. A
+/// single one of a record is none: without it nothing of the kind would be left to fit.
+std::vector<SampleRange> CyclesOf(const FitResult& fit) {
+  std::vector<SampleRange> cycles;
   for (std::size_t r = 0; r < fit.records.size(); ++r) {
     const std::vector<std::size_t>& reversals = fit.records[r].reversals;
-    std::vector<HeldOutCycle> closed;
+    std::vector<SampleRange> closed;
     for (std::size_t j = 0; j + 2 < reversals.size(); j += 2) {
       const auto own =
           std::span(fit.records[r].counts).subspan(reversals[j], reversals[j + 2] - reversals[j]);
@@ -118,34 +111,19 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
 /// @param options  of these fits; what they hold out stays so
 /// @param counted  fit to all, whose samples that count are predicted
 std::optional<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
-                                    const FitResult& counted,
-                                    std::span<const HeldOutCycle> cycles) {
+                                    const FitResult& counted, std::span<const SampleRange> cycles) {
   const std::size_t folds = std::min(kFolds, cycles.size());
   double squares = 0.0;
   double predicted = 0.0;
   for (std::size_t fold = 0; fold < folds; ++fold) {
-    FitOptions rest = options;
-    std::vector<std::vector<bool>>& held_out = rest.preparation.held_out;
-    held_out.resize(records.size());
-    for (std::size_t r = 0; r < records.size(); ++r) held_out[r].resize(records[r].size(), false);
-    for (std::size_t c = fold; c < cycles.size(); c += folds) {
-      for (std::size_t i = cycles[c].begin; i < cycles[c].end; ++i) {
-        held_out[cycles[c].record][i] = true;
-      }
-    }
-    FitResult fit;
-    try {
-      fit = Fitter(rest).Fit(records, Depth::kEstimate);
-    } catch (const InvalidArgument&) {
-      // Too few samples, or a rig that ran rigid, beyond what the rest of the record can see.
-      return std::nullopt;
-    }
-    if (!fit.converged) return std::nullopt;
-    for (std::size_t c = fold; c < cycles.size(); c += folds) {
-      const auto& [record, begin, end] = cycles[c];
+    std::vector<SampleRange> held_out;
+    for (std::size_t c = fold; c < cycles.size(); c += folds) held_out.push_back(cycles[c]);
+    const std::optional<FitResult> fit = FitWithout(held_out, records, options);
+    if (!fit) return std::nullopt;
+    for (const auto& [record, begin, end] : held_out) {
       for (std::size_t i = begin; i < end; ++i) {
         if (counted.records[record].counts[i] == 0) continue;
-        squares += fit.records[record].residual[i] * fit.records[record].residual[i];
+        squares += fit->records[record].residual[i] * fit->records[record].residual[i];
         ++predicted;
       }
     }
@@ -172,7 +150,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
   }
   if (std::ranges::none_of(fits, IsFitted)) return scores;
   const FitResult& best = ScoreByCriterion(fits, records, scores);
-  const std::vector<HeldOutCycle> cycles = CyclesOf(best);
+  const std::vector<SampleRange> cycles = CyclesOf(best);
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     if (!scores[i].converged) continue;
     const FitOptions from_here = ContinuedFrom(fits[i], OptionsOf(scores[i], options));
