@@ -146,7 +146,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const Estimates fitted(problem, solution, noise,
-                         WeightedForceErrors(attempt.drawn, problem, solution), thresholds,
+                         WeightedForceErrors(attempt.drawn, problem, solution), options,
                          std::move(at));
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);

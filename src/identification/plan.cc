@@ -151,8 +151,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
     noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
   }
   const Estimates estimates(
-      problem, solution, noise, WeightedForceErrors(drawn.get(), problem, solution),
-      options.thresholds,
+      problem, solution, noise, WeightedForceErrors(drawn.get(), problem, solution), options,
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;

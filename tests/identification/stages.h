@@ -129,13 +129,12 @@ inline WeightedFit FitWeighted(Stages& stages) {
 /// The parabola's errors of a solution.
 inline identification::Estimates EstimatesOf(Stages& stages,
                                              const identification::Solution& solution,
-                                             const identification::Noise& noise,
-                                             const identification::Thresholds& thresholds = {}) {
+                                             const identification::Noise& noise) {
   return {stages.problem,
           solution,
           noise,
           {},
-          thresholds,
+          stages.options,
           identification::LinearizeAt(stages.problem, solution.theta, stages.solver.response,
                                       stages.problem.parameters.free())};
 }

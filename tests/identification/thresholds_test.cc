@@ -67,7 +67,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   Stages stages(record, With(thresholds));
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
-  const Estimates estimates = testing::EstimatesOf(stages, best, noise, thresholds);
+  const Estimates estimates = testing::EstimatesOf(stages, best, noise);
   ParameterEstimate shape;
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;

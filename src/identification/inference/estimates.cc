@@ -41,13 +41,14 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
 }
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     Eigen::MatrixXd drawn, const Thresholds& thresholds, Linearization at)
+                     Eigen::MatrixXd drawn, const FitOptions& options, Linearization at)
     : problem_(problem),
       solution_(solution),
       noise_(noise),
       drawn_(std::move(drawn)),
+      confidence_(options.confidence),
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
-                                noise.confidence)),
+                                options.confidence)),
       variance_(noise.variance * noise.repeating),
       at_(std::move(at)) {
   const std::vector<std::size_t> free(problem.parameters.free().begin(),
@@ -68,7 +69,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
   if (noise.is_known || drawn_.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
   const auto parameters = static_cast<double>(free.size());
-  const double absorbed = std::min(full_.absorbed, thresholds.most_absorbed * count);
+  const double absorbed = std::min(full_.absorbed, options.thresholds.most_absorbed * count);
   if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
 }
 
@@ -114,8 +115,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
     // that is the program's own, nothing is known of what lies beyond it.
     const double inwards = side == BoundSide::kLower ? 1 : -1;
-    const double end =
-        parameter.ToValue(theta + inwards * NormalQuantile(noise_.confidence) * error);
+    const double end = parameter.ToValue(theta + inwards * NormalQuantile(confidence_) * error);
     const std::optional<double> bound =
         IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
     const bool is_upwards = end > estimate.value;

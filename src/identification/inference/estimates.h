@@ -9,8 +9,8 @@
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
@@ -52,7 +52,7 @@ class Estimates {
   /// @param drawn    as of CorrelatedProduct()
   /// @param at       the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            Eigen::MatrixXd drawn, const Thresholds& thresholds, Linearization at);
+            Eigen::MatrixXd drawn, const FitOptions& options, Linearization at);
 
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] const Solution& solution() const { return solution_; }
@@ -75,7 +75,7 @@ class Estimates {
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
-  /// Returns the half width of an interval of confidence() in standard errors.
+  /// Returns the half width of an interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
   /// Returns the F beyond which a held parameter is outside its interval.
   [[nodiscard]] double critical() const { return quantile_ * quantile_; }
@@ -96,6 +96,7 @@ class Estimates {
   const Solution& solution_;
   const Noise& noise_;
   Eigen::MatrixXd drawn_;
+  double confidence_;
   double quantile_;
   double variance_;
   Linearization at_;

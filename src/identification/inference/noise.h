@@ -55,7 +55,6 @@ struct Noise {
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
   std::size_t outliers = 0;         // samples at less than half their weight
   std::size_t samples = 0;          // that count
-  double confidence = 0.95;         // of the intervals that follow from it
 
   /// Returns the effective sample size, at least 1: n/(1 + 2Σρ²) for autocorrelated residuals, and
   /// one stroke's samples for what repeats in every stroke.

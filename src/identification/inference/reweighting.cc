@@ -330,7 +330,6 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
                  std::size_t parameters) {
   Noise noise;
   noise.samples = data.counted;
-  noise.confidence = options.confidence;
   noise.is_known = options.response_noise().has_value();
   const double known = options.response_noise().value_or(0.0) / data.response_unit();
   noise.variance =
