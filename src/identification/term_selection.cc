@@ -213,10 +213,9 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
 /// Adds terms to a law, one after the other.
 class Selection {
  public:
-  Selection(std::span<const RecordView> records, Depth depth, TermSelection& result)
-      : records_(records), depth_(depth), result_(result) {}
+  explicit Selection(std::span<const RecordView> records) : records_(records) {}
 
-  void Run(const FitOptions& options);
+  TermSelection Run(const FitOptions& options);
   std::vector<std::string> Likely(const FitOptions& options, const FitResult& law,
                                   std::size_t most);
 
@@ -233,8 +232,7 @@ class Selection {
     TermScore score;
   };
 
-  bool Begin(const FitOptions& options, const FitResult& law,
-             std::vector<TermCandidate> candidates);
+  bool Begin(const FitOptions& options, const FitResult& law);
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
   [[nodiscard]] std::optional<std::size_t> Find(std::string_view name) const;
   std::vector<Gain> Score();
@@ -252,8 +250,7 @@ class Selection {
 
   static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
   std::span<const RecordView> records_;
-  Depth depth_;  // of the fit that is returned
-  TermSelection& result_;
+  TermSelection result_;
   std::size_t fits_ = 0;  // that were made
   std::vector<TermCandidate> candidates_;
   Model base_;  // with the terms that were added
@@ -275,9 +272,8 @@ std::optional<std::size_t> Selection::Find(std::string_view name) const {
 /// Prepares the records for all candidates at once, since what a lag leaves out is left out for
 /// all, and fits the law to them.
 /// @returns false where it has no fit
-bool Selection::Begin(const FitOptions& options, const FitResult& law,
-                      std::vector<TermCandidate> candidates) {
-  candidates_ = std::move(candidates);
+bool Selection::Begin(const FitOptions& options, const FitResult& law) {
+  candidates_ = TermCandidates(records_, options, law);
   std::vector<TermChoice> choices;
   choices.reserve(candidates_.size());
   for (const TermCandidate& candidate : candidates_) choices.push_back(candidate.choice);
@@ -458,14 +454,16 @@ bool Selection::Round() {
   return false;
 }
 
-void Selection::Run(const FitOptions& options) {
+TermSelection Selection::Run(const FitOptions& options) {
   ++fits_;
   result_.options = options;
   result_.fit = Fitter(options).Fit(records_, Depth::kFull);
   const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
-  if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
+  if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) {
+    return std::move(result_);
+  }
   const FitResult law = result_.fit;
-  if (!Begin(options, law, TermCandidates(records_, options, law))) return;
+  if (!Begin(options, law)) return std::move(result_);
   // A gap that was measured without a model is tried first: no linear step from a contact that is
   // too soft for the want of a gap predicts it.
   if (HasGap(law)) {
@@ -484,13 +482,14 @@ void Selection::Run(const FitOptions& options) {
   std::ranges::stable_sort(result_.considered, {}, [&](const ConsideredTerm& term) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
   });
+  return std::move(result_);
 }
 
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
 /// Tc or leave more than is known to be left, else from where it is. The law stays where its Tc
 /// would be lost.
 void Selection::FitLast(const FitResult& law) {
-  FitResult last = FitTo(base_.options, depth_);
+  FitResult last = FitTo(base_.options, Depth::kFull);
   const double most_left = (1 + Limits().worthwhile_gain) * base_.fit.rms;
   const auto is_kept = [&](const FitResult& fit) {
     return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
@@ -498,7 +497,7 @@ void Selection::FitLast(const FitResult& law) {
   if (!is_kept(last) || last.rms > most_left) {
     FitOptions from_here = base_.options;
     StartFrom(base_.fit, from_here);
-    last = FitTo(from_here, depth_);
+    last = FitTo(from_here, Depth::kFull);
   }
   if (is_kept(last)) {
     // One term that leaves but noise rules out what leaves much more.
@@ -525,7 +524,7 @@ void Selection::FitLast(const FitResult& law) {
 /// that gains most first; the gain of a column that follows the force counts twice.
 std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law,
                                            std::size_t most) {
-  if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return {};
+  if (!IsFitted(law) || !Begin(options, law)) return {};
   std::vector<Gain> tried = Score();
   std::erase_if(tried, [&](const Gain& gain) {
     return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
@@ -561,18 +560,14 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
 
 }  // namespace
 
-TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
-                          Depth depth) {
-  TermSelection result;
-  Selection(records, depth, result).Run(options);
-  return result;
+TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options) {
+  return Selection(records).Run(options);
 }
 
 std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const FitOptions& options,
                                      const FitResult& fit, std::size_t most) {
   if (options.response() != loop::Channel::kForce) return {};
-  TermSelection unused;
-  return Selection(records, Depth::kEstimate, unused).Likely(options, fit, most);
+  return Selection(records).Likely(options, fit, most);
 }
 
 }  // namespace mindahl::identification

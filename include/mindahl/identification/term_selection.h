@@ -46,11 +46,9 @@ struct TermSelection {
 /// of a loop that slides leaves the half gap that was measured, unless it leaves nothing but noise.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
-/// @param depth    of the fit that is returned
 /// @throws InvalidArgument as Fit does
 /// Deterministic. Nothing is selected in a fit of the displacement.
-TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
-                          Depth depth = Depth::kFull);
+TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options);
 
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
 /// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are
