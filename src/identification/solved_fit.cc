@@ -27,7 +27,7 @@ std::vector<InitialState> GivenStates(const Attempt& attempt) {
   const std::vector<InitialState>& given = attempt.options.initial_states;
   if (!given.empty()) return given.size() == 1 ? ForAll(attempt, given.front()) : given;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
-    return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
+    return fixed.first.starts_with(TermOf(OriginId(attempt.data.excitation)).name);
   });
   if (unloaded_is_given || std::ranges::none_of(attempt.data.records, &ScaledRecord::Turns)) {
     return ForAll(attempt, InitialState::kVirgin);

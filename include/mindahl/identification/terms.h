@@ -133,8 +133,6 @@ struct Term {
   [[nodiscard]] double scale(const TermUnits& units) const;
   /// Returns the value at θ = 0 of one that is not positive, likewise.
   [[nodiscard]] double reference(const TermUnits& units) const;
-  /// True if a value of zero or below is outside its domain, as of an exponent of the speed.
-  [[nodiscard]] constexpr bool must_be_positive() const { return positive || lowest > 0; }
 };
 
 /// Returns all parameters of a fit of `response`, in the order in which they are reported: the

@@ -25,16 +25,6 @@ Finding OfRecord(std::size_t record, std::size_t records, Finding finding) {
   return finding;
 }
 
-/// Counted as the report does, after smoothing.
-Finding UncertainReversals(const RecordFit& record) {
-  const loop::ReversalGate& gate = record.gate;
-  return {.code = "reversals_uncertain",
-          .numbers = {{"count", static_cast<double>(record.reversals.size())},
-                      {"gate", gate.gate},
-                      {"other_count", static_cast<double>(gate.other_count)},
-                      {"other_gate", gate.other_gate}}};
-}
-
 }  // namespace
 
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
@@ -44,7 +34,14 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
     const auto append = [&](Finding finding) {
       findings.push_back(OfRecord(r, records.size(), std::move(finding)));
     };
-    if (!record.gate.certain) append(UncertainReversals(record));
+    if (const loop::ReversalGate& gate = record.gate; !gate.certain) {
+      // Counted as the report does, after smoothing.
+      append({.code = "reversals_uncertain",
+              .numbers = {{"count", static_cast<double>(record.reversals.size())},
+                          {"gate", gate.gate},
+                          {"other_count", static_cast<double>(gate.other_count)},
+                          {"other_gate", gate.other_gate}}});
+    }
     if (record.glitches.total > 0) {
       append({.code = "glitches_left_out",
               .numbers = {{"count", static_cast<double>(record.glitches.total)}}});

@@ -158,10 +158,11 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
                          std::span<ParameterEstimate> estimates) {
   constexpr double kFirstOrder = 2.0;
   const auto& reported = problem.parameters.reported();
+  const auto& free = problem.parameters.free();
   for (std::size_t k = 0; k < reported.size(); ++k) {
     const std::size_t p = reported[k];
     const Parameter& parameter = problem.parameters[p];
-    const std::size_t place = problem.parameters.PlaceAmongFree(p);
+    const auto place = static_cast<std::size_t>(std::ranges::find(free, p) - free.begin());
     const auto include = [&](double step, double half) {
       const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
       const auto [lower, upper] =

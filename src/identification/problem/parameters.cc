@@ -93,7 +93,7 @@ void RequireNearUnit(const Parameter& parameter, std::string_view quantity, doub
 /// A value from the user must be one that the model takes.
 void RequireInDomain(const Parameter& parameter, std::string_view name, double value) {
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
-  if (parameter.term->must_be_positive()) {
+  if (parameter.term->positive || parameter.term->lowest > 0) {
     RequirePositive(quantity, value);
     // Rounding errors would decide the phase of a shorter one.
     const double shortest = 2e-9 * parameter.scale;
@@ -207,8 +207,7 @@ Parameter MakeParameterOfColumn(const Term& term, std::size_t column, const Scal
 }  // namespace
 
 bool HasTerm(const FitOptions& options, std::string_view name) {
-  return std::ranges::any_of(options.fixed,
-                             [&](const auto& fixed) { return fixed.first == name; }) ||
+  return options.fixed.contains(std::string(name)) ||
          std::ranges::find(options.terms, name) != options.terms.end();
 }
 

@@ -91,9 +91,6 @@ inline constexpr double kHighestShapeUnderLoad = 0.99;
 constexpr TermId OriginId(loop::Channel excitation) {
   return excitation == loop::Channel::kForce ? TermId::kForceOffset : TermId::kDisplacementOffset;
 }
-inline std::string_view OriginTerm(loop::Channel excitation) {
-  return TermOf(OriginId(excitation)).name;
-}
 
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
@@ -110,10 +107,6 @@ class Parameters {
 
   /// Positions of the free ones.
   [[nodiscard]] const std::vector<std::size_t>& free() const { return free_; }
-  /// Returns the place of a parameter among the free ones, their number where it is not free.
-  [[nodiscard]] std::size_t PlaceAmongFree(std::size_t i) const {
-    return static_cast<std::size_t>(std::ranges::find(free_, i) - free_.begin());
-  }
   /// Positions of those with a prior, held ones included.
   [[nodiscard]] const std::vector<std::size_t>& with_prior() const { return with_prior_; }
   /// Σ of the squared residuals of the priors.
@@ -130,13 +123,6 @@ class Parameters {
   /// the force, of which there is one at most; size() where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
   [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
-  [[nodiscard]] bool has_asymmetry() const {
-    return !parameters_[RowOf(TermId::kAsymmetry)].absent;
-  }
-  /// True if it is held for being confounded with the force's offset in every record.
-  [[nodiscard]] bool asymmetry_is_confounded() const {
-    return parameters_[RowOf(TermId::kAsymmetry)].confounded;
-  }
   /// True if the force's offset of a record is held.
   [[nodiscard]] bool any_zero_is_known() const;
   /// True if the records are under loads that differ.

@@ -95,7 +95,7 @@ bool HasPathAsymmetry(const Problem& problem) {
 /// the asymmetry (models/joint_friction.h).
 bool IsStateOfJoint(const Problem& problem, const ScaledRecord& record) {
   return problem.model->memory == models::Memory::kNone &&
-         (!record.load_ratio.empty() || problem.parameters.has_asymmetry());
+         (!record.load_ratio.empty() || !problem.parameters[RowOf(TermId::kAsymmetry)].absent);
 }
 
 double LoadRatioAt(const ScaledRecord& record, std::size_t sample) {
@@ -209,7 +209,8 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
   const bool is_state = IsStateOfJoint(*problem_, record);
   std::vector<double> state(is_state ? record.size() : 0);
   if (is_state) DifferentiatePath(at, r, state, {});
-  const Eigen::ArrayXd slip_factors = SlipFactors(record, at);
+  Eigen::ArrayXd slip_factors = Eigen::ArrayXd::Ones(std::ssize(record.displacement));
+  if (slip_varies_) slip_factors = SlipOf(record, at).factor;
   for (std::size_t i = 0; i < record.size(); ++i) {
     double factor = slip_factors[static_cast<Eigen::Index>(i)];
     if (is_state) {

@@ -98,11 +98,6 @@ class Response {
                               models::OriginSensitivity& sensitivity);
   /// Returns the loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
-  /// Returns the slip force over Tc at every sample of a record of the problem that is bound.
-  [[nodiscard]] Eigen::ArrayXd SlipFactors(const ScaledRecord& record, const LawPoint& at) const {
-    if (!slip_varies_) return Eigen::ArrayXd::Ones(std::ssize(record.displacement));
-    return SlipOf(record, at).factor;
-  }
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
     if (scratch_.size() < size) scratch_.resize(size);

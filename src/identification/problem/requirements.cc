@@ -138,7 +138,7 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 }
 
 void RequireToldAsymmetry(const Problem& problem) {
-  if (!problem.parameters.asymmetry_is_confounded()) return;
+  if (!problem.parameters[RowOf(TermId::kAsymmetry)].confounded) return;
   throw InvalidArgument(
       "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
       "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "
