@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identification/continued_fit.h"
+#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/residuals.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
@@ -44,19 +45,19 @@ bool StartsInside(const ScaledRecord& record, const Thresholds& thresholds) {
   return std::min(start - low, high - start) > thresholds.starts_inside * (high - low);
 }
 
-/// True if a record begins under a force, with a past that it does not show.
-bool BeginsLoaded(const ScaledRecord& record) {
-  constexpr double kUnloaded = 0.05;  // of the half range
-  const auto [low, high] = std::ranges::minmax(record.force);
-  return std::abs(record.force.front() - (low + high) / 2) > kUnloaded * (high - low) / 2;
-}
-
-/// Returns what lies before the first turns of records that begin loaded.
+/// Returns what lies before the first turns of records that begin under a force, with a past that
+/// they do not show.
 std::vector<SampleRange> UnknownPast(const ScaledRecords& data, const FitResult& fit) {
+  constexpr double kUnloaded = 0.05;   // of the half range
+  constexpr double kDeviations = 4.0;  // of the noise
+  const double noise = std::sqrt(WhiteVariance(fit)) / data.response_unit();
   std::vector<SampleRange> past;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const std::vector<double>& force = data.records[r].force;
     const std::vector<std::size_t>& reversals = fit.records[r].reversals;
-    if (reversals.empty() || !BeginsLoaded(data.records[r])) continue;
+    const auto [low, high] = std::ranges::minmax(force);
+    const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
+    if (reversals.empty() || !(std::abs(force.front() - (low + high) / 2) > unloaded)) continue;
     past.push_back({r, 0, reversals.front()});
   }
   return past;
@@ -188,11 +189,11 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
   // need turns that are not recorded. That alone does not decide for it.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
-  if (is_open && is_for_dahl && std::ranges::any_of(data.records, BeginsLoaded)) {
+  const std::vector<SampleRange> past = UnknownPast(data, fit);
+  if (is_open && is_for_dahl && !past.empty()) {
     if (HasOneAmplitude(records, data, options.thresholds)) return choice;
     FitOptions same = options;
     StartFrom(fit, same);
-    const std::vector<SampleRange> past = UnknownPast(data, fit);
     const auto without = FitWithout(past, records, std::move(same));
     const auto other_without = FitWithout(past, records, std::move(others));
     if (!without || !other_without) return choice;

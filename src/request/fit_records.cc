@@ -215,12 +215,15 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
 }
 
 /// True if a term takes the slip force's place: it is known no more, or leaves what its interval
-/// said; of a column that makes a part of the half gap, not even most of that is left.
+/// said though the term does not describe the record; of a column that makes a part of the half
+/// gap, not even most of that is left.
 bool LosesSlipForce(const FitResult& before, const FitResult& after, bool by_column,
                     const identification::Thresholds& thresholds) {
   const identification::ParameterEstimate& was = *before.Find("slip_force");
   const identification::ParameterEstimate& is = *after.Find("slip_force");
   if (was.is_known() && !is.is_known()) return true;
+  // Of a force that the law alone has in Tc, and its interval with it.
+  if (after.adequacy.verdict == AdequacyVerdict::kAdequate) return false;
   const std::optional<double>& half_gap = after.WidestRecord().facts.half_gap;
   if (by_column && half_gap)
     return !is.is_known() || is.value < thresholds.rival * std::abs(*half_gap);
@@ -240,27 +243,42 @@ bool IsRivalled(const FitResult& before, const FitResult& after) {
 
 /// Says where each file alone has a Tc of its own over the load, further apart than their errors: a
 /// load series has one μ, and what the law then misses is no term's.
-std::optional<identification::Finding> FindDisproportion(const FitOptions& options,
-                                                         std::span<const Record> records,
-                                                         const FitResult& fit) {
+std::optional<identification::Finding> FindDisproportion(
+    const FitOptions& options, std::span<const contact::UncertainValue> loads,
+    std::span<const Record> records, const FitResult& fit) {
   constexpr double kLeastSpread = 0.02;
   if (!fit.is_load_series() || fit.adequacy.verdict == AdequacyVerdict::kAdequate) return {};
   double least = std::numeric_limits<double>::infinity();
   double most = 0.0;
   double lowest_upper = least;
   double highest_lower = 0.0;
+  // What is given of σ and Tc is theirs at the mean of the loads.
+  const auto is_of_series = [](const auto& given) {
+    return given.first != "rig_stiffness" && given.first != "alpha";
+  };
+  FitOptions alone = options;
+  alone.normal_loads.clear();
+  alone.start.clear();
+  alone.bounds.clear();
+  std::erase_if(alone.fixed, is_of_series);
+  std::erase_if(alone.priors, is_of_series);
   for (std::size_t r = 0; r < records.size(); ++r) {
-    FitOptions alone = options;
-    alone.normal_loads.clear();
     alone.initial_states = {fit.records[r].initial_state};
     const double load = *fit.records[r].normal_load;
-    const FitResult found = identification::Fit(records.subspan(r, 1), alone, Depth::kIntervals);
+    const double uncertainty =
+        loads.size() == records.size() ? 2 * loads[r].standard_error / load : 0.0;
+    FitResult found;
+    try {
+      found = identification::Fit(records.subspan(r, 1), alone, Depth::kIntervals);
+    } catch (const InvalidArgument&) {
+      return {};  // too few samples for one of them
+    }
     const identification::ParameterEstimate* slip_force = found.Find("slip_force");
     if (slip_force == nullptr || !slip_force->is_known() || !slip_force->upper95) return {};
     least = std::min(least, slip_force->value / load);
     most = std::max(most, slip_force->value / load);
-    lowest_upper = std::min(lowest_upper, *slip_force->upper95 / load);
-    highest_lower = std::max(highest_lower, *slip_force->lower95 / load);
+    lowest_upper = std::min(lowest_upper, *slip_force->upper95 / load * (1 + uncertainty));
+    highest_lower = std::max(highest_lower, *slip_force->lower95 / load * (1 - uncertainty));
   }
   if (!(highest_lower > lowest_upper) || !(most > (1 + kLeastSpread) * least)) return {};
   return identification::Finding{.code = "load_not_proportional",
@@ -328,20 +346,19 @@ Trial WithTerm(const FitOptions& options, const std::string& name, const Record&
 /// Fits the record again without its first cycle, or with the term that explains most of what the
 /// law misses, where the law alone is not adequate; with the next one where it does not gain
 /// enough, or the slip force is lost.
+/// @param found  written: the fit of the step
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
-                                             std::span<const Record> records,
-                                             const FitResult& fit) {
+                                             std::span<const Record> records, const FitResult& fit,
+                                             FitResult& found) {
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !(before > kLeastMisfit) ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
-      fit.FindFinding("load_not_proportional") != nullptr || !options.terms.empty() ||
-      !options.covariates.empty()) {
+      !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
-  FitResult found;
   const auto gains = [&](Trial& trial) {
     report::NextStep& step = trial.step;
     step.misfit_before = *before;
@@ -467,12 +484,18 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   } catch (const identification::TooFewSamples& error) {
     Refuse("{}: {}", fmt::join(files, ", "), error.what());
   }
-  if (const auto disproportion = FindDisproportion(asked.options, records, asked.fit)) {
+  std::optional<report::NextStep> next;
+  FitResult found;
+  if (!request.chooses_terms)
+    next = FindNextStep(request, asked.options, records, asked.fit, found);
+  const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
+  const auto disproportion =
+      FindDisproportion(asked.options, request.contact.normal_loads, records, asked.fit);
+  if (!is_described && disproportion) {
     asked.fit.findings.push_back(*disproportion);
     asked.fit.adequacy.causes.clear();
+    next.reset();
   }
-  std::optional<report::NextStep> next;
-  if (!request.chooses_terms) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
   if (!known.normal_load && asked.fit.normal_load) {
     known.normal_load = *asked.fit.normal_load;
