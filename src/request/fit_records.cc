@@ -215,18 +215,20 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
 }
 
 /// True if a term takes the slip force's place: it is known no more, or leaves what its interval
-/// said though the term does not describe the record; of a column that makes a part of the half
-/// gap, not even most of that is left.
-bool LosesSlipForce(const FitResult& before, const FitResult& after, bool by_column,
-                    const identification::Thresholds& thresholds) {
+/// said; of a column that makes a part of the half gap, not even most of that is left.
+bool LosesSlipForce(const FitResult& before, const FitResult& after, const FitOptions& tried) {
   const identification::ParameterEstimate& was = *before.Find("slip_force");
   const identification::ParameterEstimate& is = *after.Find("slip_force");
   if (was.is_known() && !is.is_known()) return true;
-  // Of a force that the law alone has in Tc, and its interval with it.
-  if (after.adequacy.verdict == AdequacyVerdict::kAdequate) return false;
+  // A force of the velocity belongs to the half gap, and so to the interval that the law alone has.
+  const bool is_of_time = std::ranges::any_of(tried.terms, [](const std::string& term) {
+    return identification::FindTerm(term)->needs_time;
+  });
+  if (is_of_time && after.adequacy.verdict == AdequacyVerdict::kAdequate) return false;
   const std::optional<double>& half_gap = after.WidestRecord().facts.half_gap;
-  if (by_column && half_gap)
-    return !is.is_known() || is.value < thresholds.rival * std::abs(*half_gap);
+  if (!tried.covariates.empty() && half_gap) {
+    return !is.is_known() || is.value < tried.thresholds.rival * std::abs(*half_gap);
+  }
   return is.value < was.lower95.value_or(0.0) || is.value > was.upper95.value_or(is.value);
 }
 
@@ -375,7 +377,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     step.misfit_after = *found.adequacy.misfit_over_half_gap;
     for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     return step.misfit_after <= (1 - options.thresholds.advised_gain) * *before &&
-           !LosesSlipForce(fit, found, !trial.options.covariates.empty(), options.thresholds);
+           !LosesSlipForce(fit, found, trial.options);
   };
   std::optional<Trial> later = WithoutFirstCycle(options, fit);
   if (later && gains(*later)) return later->step;

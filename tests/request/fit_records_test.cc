@@ -125,6 +125,25 @@ TEST(NextStep, IsNoneWhereACauseWithoutATermSeemsToDescribeTheRecordAsWell) {
   EXPECT_FALSE(made.next);
 }
 
+TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
+  io::RecordFile file;
+  for (const double sine : testing::Sine(3, 200)) file.record.displacement.push_back(4e-6 * sine);
+  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
+                                       file.record.displacement);
+  Generator generator(4);
+  for (std::size_t i = 0; i < file.record.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
+    file.record.force[i] += 2 * std::cos(phase) + 0.1 * testing::Normal(generator);
+    file.record.time.push_back(0.005 * static_cast<double>(i));
+    file.lines.push_back(i + 2);
+  }
+  const report::Report made = FitRecords({}, {file});
+  EXPECT_GT(*made.fit.Find("slip_force")->lower95, 40.3) << "with the force of the velocity";
+  ASSERT_TRUE(made.next);
+  EXPECT_THAT(made.next->options,
+              AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
+}
+
 TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   FitRequest request;
   request.contact.normal_loads = {{50, 0}, {100, 0}, {200, 0}};
@@ -136,6 +155,11 @@ TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   EXPECT_NEAR(*found->Number("most"), 0.4, 0.004);
   EXPECT_FALSE(made.next);
   EXPECT_THAT(made.fit.adequacy.causes, IsEmpty());
+  // What is given of the series is nothing of the files'.
+  request.fit.fixed["load_exponent"] = 1.0 / 3;
+  request.fit.bounds["slip_force"] = {30.0, 40.0};
+  EXPECT_NO_THROW(
+      FitLoops({{3e7, 1.0 / 3, 20.0}, {3.8e7, 1.0 / 3, 33.0}, {4.8e7, 1.0 / 3, 55.0}}, request));
 }
 
 TEST(FitRecords, RefusesAForceBesideATorque) {
