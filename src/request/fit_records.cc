@@ -348,10 +348,11 @@ Trial WithTerm(const FitOptions& options, const std::string& name, const Record&
 /// Fits the record again without its first cycle, or with the term that explains most of what the
 /// law misses, where the law alone is not adequate; with the next one where it does not gain
 /// enough, or the slip force is lost.
-/// @param found  written: the fit of the step
+/// @param is_whole  is nothing trimmed, so that cycles count from the first?
+/// @param found     written: the fit of the step
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records, const FitResult& fit,
-                                             FitResult& found) {
+                                             bool is_whole, FitResult& found) {
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
@@ -379,7 +380,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     return step.misfit_after <= (1 - options.thresholds.advised_gain) * *before &&
            !LosesSlipForce(fit, found, trial.options);
   };
-  std::optional<Trial> later = WithoutFirstCycle(options, fit);
+  std::optional<Trial> later = is_whole ? WithoutFirstCycle(options, fit) : std::nullopt;
   if (later && gains(*later)) return later->step;
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
@@ -488,8 +489,9 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   std::optional<report::NextStep> next;
   FitResult found;
-  if (!request.chooses_terms)
-    next = FindNextStep(request, asked.options, records, asked.fit, found);
+  if (!request.chooses_terms) {
+    next = FindNextStep(request, asked.options, records, asked.fit, left_out.empty(), found);
+  }
   const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion =
       FindDisproportion(asked.options, request.contact.normal_loads, records, asked.fit);
