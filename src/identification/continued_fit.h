@@ -50,10 +50,10 @@ inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out
   }
   try {
     FitResult fit = Fitter(std::move(options)).Fit(records, Depth::kEstimate);
-    if (fit.converged) return fit;
+    return fit.converged ? std::optional(std::move(fit)) : std::nullopt;
   } catch (const InvalidArgument&) {
+    return std::nullopt;
   }
-  return std::nullopt;
 }
 
 }  // namespace mindahl::identification

@@ -17,7 +17,7 @@ namespace mindahl::identification {
 namespace {
 
 /// Takes a column for one that the others have where less of its norm is its own.
-constexpr double kOwnPart = 3e-5;
+constexpr double kOwnShare = 3e-5;
 /// Exponents at which the columns that they shape are tried.
 constexpr std::array kTriedExponents = {0.25, 0.5, 1.0};
 /// Fraction of the distance to a bound beyond which no search begins.
@@ -167,7 +167,7 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   for (std::size_t c = 0; c < columns.size(); ++c) {
     omitted.col(static_cast<Eigen::Index>(c)) = columns[c];
   }
-  gram_.emplace(jacobian, omitted, residual, kOwnPart);
+  gram_.emplace(jacobian, omitted, residual, kOwnShare);
 }
 
 std::optional<TermScore> TermScores::Of(std::size_t choice) const {

@@ -83,6 +83,7 @@ class RecordBuilder {
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples) {
     std::vector<std::vector<double>*> columns;  // of the quantities
+    columns.reserve(quantities_.size());
     for (const Quantity& quantity : quantities_) {
       columns.push_back(&(samples.*RulesOf(quantity.role).values));
     }

@@ -194,6 +194,7 @@ std::string WhatToCheck(const Report& report) {
 
 std::vector<std::string> Report::files() const {
   std::vector<std::string> names;
+  names.reserve(records.size());
   for (const io::RecordFile& record : records) names.push_back(record.name);
   return names;
 }

@@ -265,6 +265,7 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
     }
   };
   std::vector<std::future<void>> workers;
+  workers.reserve(threads);
   for (std::size_t k = 0; k < threads; ++k) {
     workers.push_back(std::async(work));  // here where no thread can be started
   }
