@@ -98,6 +98,15 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   EXPECT_EQ(dahl.FindFinding("other_law_fits_better"), nullptr);
 }
 
+TEST(LawChoice, IsNotMadeByTheStepsOfAnEncoder) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    Record record = From(Noisy(Virgin("mindlin-dahl", 0.8 * kGrossSlip, 5.0), seed), kPerCycle / 8);
+    record.displacement = testing::Quantised(record.displacement, 0.8 * kGrossSlip / 15);
+    const FitResult fit = FitOne(record);
+    EXPECT_FALSE(fit.law_choice && fit.law_choice->prefers_alternative()) << seed;
+  }
+}
+
 TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
   // An amplitude that grows by 2 %, from the middle of a stroke on.
   const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);

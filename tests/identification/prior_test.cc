@@ -23,6 +23,16 @@ FitOptions Options() {
           .force_noise = kNoise * kLaw.slip_force};
 }
 
+TEST(Prior, OfAlphaBelowAThirdTriesNoRigAtAThird) {
+  const BranchLaw law{4e7, 0.1, 40.0};
+  const testing::History displacement = Cycling(Wave::kSine, 3e-6, 2.0, 240);
+  Generator generator(7);
+  const Record record = WithForceNoise(LoopOf(law, displacement), 0.1, generator);
+  const FitResult fit = FitOne(record, {.priors = {{"alpha", {0.1, 1.0}}}});
+  EXPECT_NEAR(fit.Find("alpha")->value, 0.1, 0.01);
+  EXPECT_EQ(fit.FindFinding("shape_or_rig"), nullptr);
+}
+
 /// Value and variance of what a normal law and a reading of a parameter say together.
 struct Combined {
   double value;
