@@ -238,7 +238,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   FitOptions others = given;
   others.preparation.drawn = drawn;
   result.law_choice = CompareLaws(records, others, data, result);
-  // Of a model that is inadequate only a choice against it, as the other law may be why.
+  // An inadequate model reports a choice against it only: the other law may be the reason.
   const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
   if (result.law_choice && is_inadequate && !result.law_choice->prefers_alternative()) {
     result.law_choice.reset();

@@ -189,8 +189,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
   // need turns that are not recorded. That alone does not decide for it.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
-  const std::vector<SampleRange> past = UnknownPast(data, fit);
-  if (is_open && is_for_dahl && !past.empty()) {
+  const std::vector<SampleRange> past =
+      is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
+  if (!past.empty()) {
     if (HasOneAmplitude(records, data, options.thresholds)) return choice;
     FitOptions same = options;
     StartFrom(fit, same);

@@ -126,8 +126,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "one load"},
     {"load_not_proportional",
      "each file alone gives its own μ, from {least:-} to {most:-}: Tc is not in proportion to "
-     "these "
-     "loads; mindahl batch fits the files apart"},
+     "these loads; mindahl batch fits the files apart"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination",

@@ -254,7 +254,7 @@ std::optional<identification::Finding> FindDisproportion(
   double most = 0.0;
   double lowest_upper = least;
   double highest_lower = 0.0;
-  // What is given of σ and Tc is theirs at the mean of the loads.
+  // Given values of σ and Tc hold at the mean load, not at the load of one file.
   const auto is_of_series = [](const auto& given) {
     return given.first != "rig_stiffness" && given.first != "alpha";
   };
@@ -494,8 +494,10 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion =
-      FindDisproportion(asked.options, request.contact.normal_loads, records, asked.fit);
-  if (!is_described && disproportion) {
+      is_described
+          ? std::nullopt
+          : FindDisproportion(asked.options, request.contact.normal_loads, records, asked.fit);
+  if (disproportion) {
     asked.fit.findings.push_back(*disproportion);
     asked.fit.adequacy.causes.clear();
     next.reset();

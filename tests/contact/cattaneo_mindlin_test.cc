@@ -127,8 +127,8 @@ TEST(MindlinInput, RefusesFrictionlessAndUnloadedContacts) {
 }
 
 // ---
-// Where the paper (Peyret et al. 2017) prints something that cannot hold, each test shows first
-// that the printed form fails and then that the one used here does not. See docs/theory.md §3.
+// These tests concern the misprints of the paper (Peyret et al. 2017). Each shows that the printed
+// form fails and that the form used here holds. See docs/theory.md §3.
 
 // The parameters of the paper's §3.
 constexpr double kContactRadius = 0.0027;           // [m]

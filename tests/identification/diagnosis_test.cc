@@ -105,7 +105,7 @@ TEST(FindMissingRows, NamesAGapOfAQuarterOfACycleAndNoUnevenSampling) {
   EXPECT_EQ(found[0].code, "rows_missing");
   EXPECT_NEAR(*found[0].Number("gap"), 0.41, 1e-12);
   EXPECT_NEAR(*found[0].Number("from"), 2.19, 1e-12);
-  // As few rows as a step apart are no gap.
+  // Sparse rows at even times have no gap.
   const std::vector<double> sparse = {0.0, 0.3, 0.6, 0.9, 1.2};
   prepared.record.time = sparse;
   prepared.reversals = {1, 2, 3};

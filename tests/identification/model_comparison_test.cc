@@ -70,7 +70,7 @@ TEST(CompareModels, AMindlinLoopIsMindlinsAndNotDahls) {
 }
 
 TEST(CompareModels, PredictionIsByFitsThatHaveNotSeenTheCycles) {
-  // Of two cycles, from the first turn at 15, one is predicted by a fit to the rest at a time.
+  // The record has two cycles from the first turn at sample 15; a fit to the rest predicts each.
   const Record record = Measure({.cycles = 2.3}, 3);
   const ModelScore score = ScoreOf(Compare({record}), "mindlin", false);
   ASSERT_TRUE(score.held_out_rms);

@@ -87,7 +87,7 @@ TEST(JointFit, FindsThatTheFirstRecordIsVirginAndTheOthersAreSteady) {
 }
 
 // ---
-// What noise of the displacement does to a fit, and what the fit says of it.
+// These tests concern the effect of displacement noise on a fit, and what the fit reports of it.
 
 constexpr double kForceNoise = 0.005 * 60.0;  // [N]
 constexpr std::size_t kReversals = 6;

@@ -307,7 +307,7 @@ std::string RefusalOf(const LoadDependentLaw& law, const LoadedHistory& path) {
 }
 
 TEST(VariableLoad, RefusesASampleByItsNumber) {
-  // As LoadedContactState::Move() refuses it.
+  // LoadedContactState::Move() refuses it in the same way.
   const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
   EXPECT_EQ(RefusalOf(law, {{0.0, 1.0}, {1.0, -2.0}}),
             "sample 1: normal load [N] = -2 is invalid: must be finite and >= 0");

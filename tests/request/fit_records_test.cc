@@ -155,7 +155,7 @@ TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   EXPECT_NEAR(*found->Number("most"), 0.4, 0.004);
   EXPECT_FALSE(made.next);
   EXPECT_THAT(made.fit.adequacy.causes, IsEmpty());
-  // What is given of the series is nothing of the files'.
+  // Given parameters of the series do not apply to its files.
   request.fit.fixed["load_exponent"] = 1.0 / 3;
   request.fit.bounds["slip_force"] = {30.0, 40.0};
   EXPECT_NO_THROW(
@@ -244,7 +244,7 @@ Record UnderARampingLoad(double cycles, Generator& generator) {
   return record;
 }
 
-/// As the program fits it.
+/// Fits the record as the program does.
 report::Report ReportOf(const Record& record) {
   FitRequest request;
   io::RecordFile file;
