@@ -41,7 +41,7 @@ for group in "$@"; do
     --readers)
       packages+=(
         python3-scipy python3-h5py python3-pint python3-xarray
-        python3-nbclient python3-nbformat python3-ipykernel python3-emcee python3-joblib python3-distributed
+        python3-nbclient python3-nbformat python3-ipykernel python3-joblib python3-distributed
       )
       ;;
     --workflow) packages+=(snakemake slurmctld slurmd slurm-client munge) ;;

@@ -16,18 +16,18 @@ examples.
 from ._batch import BatchTable, batch
 from ._commands import Conversion, command, contact, convert, excitation, plan, simulate
 from ._fit import fit
-from ._mindahl import ContactState, InputError, LogLikelihood, Record, __version__
+from ._mindahl import ContactState, InputError, Record, __version__
 from ._readers import read_hdf5, read_mat
 from ._records import read_csv
 from ._result import FitResult, FittedRecord, FitWarning, Parameter, Report, Section
 from ._track import CycleTable, track
 
-for _public in (ContactState, InputError, LogLikelihood, Record):
+for _public in (ContactState, InputError, Record):
     _public.__module__ = __name__
 
 __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
-    "FittedRecord", "InputError", "LogLikelihood", "Parameter", "Record",
+    "FittedRecord", "InputError", "Parameter", "Record",
     "Report", "Section", "__version__", "batch", "command", "contact", "convert", "excitation", "fit",
     "plan", "read_csv", "read_hdf5", "read_mat", "simulate", "track",
 ]

@@ -245,7 +245,7 @@ class FitResult(Told):
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
         """Reads a result that save() wrote, or `mindahl fit --json` or to_json().
 
-        One of save() is complete but for log_likelihood(); the other has parameters,
+        One of save() is complete; the other has parameters,
         sections and warnings, and neither records nor figures.
         Raises ValueError for another document.
         """
@@ -403,16 +403,6 @@ class FitResult(Told):
     def summary(self) -> str:
         """What `mindahl fit` prints, as text()."""
         return self.text()
-
-    def log_likelihood(self) -> _mindahl.LogLikelihood:
-        """The log-likelihood of the free parameters, for a sampler of their posterior.
-
-        Raises ValueError for a fit that failed, was read, pickled or copied, and for one with a robust
-            loss, noise of the displacement or turning points between samples.
-        """
-        if self._fitted is None:
-            raise ValueError("a result that was read or pickled has no likelihood: fit its records again")
-        return self._fitted.log_likelihood()
 
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""

@@ -16,7 +16,6 @@
 namespace mindahl::python {
 
 namespace py = pybind11;
-using identification::LogLikelihood;
 using report::Report;
 using request::FitRequest;
 
@@ -74,15 +73,6 @@ py::dict KeptOf(const py::object& self) {
   return kept;
 }
 
-/// The log-likelihood of a fit, which reads its records.
-LogLikelihood LikelihoodOf(const Report& report) {
-  if (report.failed()) throw InputError("a fit that failed has no likelihood");
-  std::vector<loop::RecordView> views;
-  views.reserve(report.records.size());
-  for (const io::RecordFile& input : report.records) views.emplace_back(input.record);
-  return {views, report.options, report.fit};
-}
-
 /// Returns the request that the options of `mindahl fit` make, without files.
 FitRequest RequestOf(const std::vector<std::string>& words) {
   FitRequest request;
@@ -101,27 +91,12 @@ void AddFit(py::module_& module) {
       .def("covariate_columns",
            [](const FitRequest& request) { return request::MakeFitOptions(request).covariates; })
       .def("check", [](const FitRequest& request) { request::MakeFitOptions(request); });
-  py::class_<LogLikelihood>(module, "LogLikelihood",
-                            R"(ln L of the free parameters of a fit but for a constant.
-
--(n_eff/n) sum((r/s)^2)/2, with the noise s and the effective samples n_eff that the fit states; priors
-are not in it. Called with a value of each of names [unit of each]: -inf outside the bounds of the fit.)")
-      .def_property_readonly("names",
-                             [](const LogLikelihood& likelihood) {
-                               return std::vector(likelihood.names().begin(),
-                                                  likelihood.names().end());
-                             })
-      .def(
-          "__call__",
-          [](LogLikelihood& likelihood, const Array& values) { return likelihood(SpanOf(values)); },
-          py::arg("values"));
   py::class_<Report, std::shared_ptr<Report>>(module, "Fitted")
       .def("page",
            [](const Report& report) {
              const py::gil_scoped_release others_may_run;
              return report::ToPage(report);
            })
-      .def("log_likelihood", &LikelihoodOf, py::keep_alive<0, 1>())
       .def_property_readonly("kept", &KeptOf, "what a result is without its C++ part");
   module.def("fit", &Fit, py::arg("records"), py::arg("request"));
 }

@@ -15,19 +15,30 @@
 
 namespace mindahl::identification {
 
+double CeresParameter::Value() const {
+  return positive ? scale * std::exp(theta) : reference + scale * theta;
+}
+
+double CeresParameter::ThetaAt(double value) const {
+  return positive ? std::log(value / scale) : (value - reference) / scale;
+}
+
 /// The problem of a fit, made again from its records.
-struct ProblemOfFit {
-  ProblemOfFit(std::span<const loop::RecordView> records, FitOptions options, const FitResult& fit);
-  ProblemOfFit(const ProblemOfFit&) = delete;
-  ProblemOfFit& operator=(const ProblemOfFit&) = delete;
+struct CeresProblem::State {
+  State(std::span<const loop::RecordView> records, FitOptions options, const FitResult& fit);
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
   loop::PreparedRecords prepared;
   ScaledRecords data;
   std::optional<Problem> problem;
   std::vector<double> theta;  // of the fit, within the bounds
+  std::shared_ptr<UnprojectedResidual> residual;
+  std::vector<CeresParameter> parameters;
+  std::vector<std::size_t> blocks;  // among the parameters
 };
 
-ProblemOfFit::ProblemOfFit(std::span<const loop::RecordView> records, FitOptions options,
+CeresProblem::State::State(std::span<const loop::RecordView> records, FitOptions options,
                            const FitResult& fit) {
   options.preparation.force_sense = fit.force_sense;
   prepared = loop::Prepare(records, options.preparation);
@@ -54,33 +65,14 @@ ProblemOfFit::ProblemOfFit(std::span<const loop::RecordView> records, FitOptions
   }
 }
 
-double CeresParameter::Value() const {
-  return positive ? scale * std::exp(theta) : reference + scale * theta;
-}
-
-double CeresParameter::ThetaAt(double value) const {
-  return positive ? std::log(value / scale) : (value - reference) / scale;
-}
-
-struct CeresProblem::State {
-  State(std::span<const loop::RecordView> records, const FitOptions& options, const FitResult& fit,
-        double residual_unit)
-      : of(records, options, fit),
-        residual(std::make_shared<UnprojectedResidual>(*of.problem,
-                                                       residual_unit / of.data.response_unit())) {}
-
-  ProblemOfFit of;
-  std::shared_ptr<UnprojectedResidual> residual;
-  std::vector<CeresParameter> parameters;
-  std::vector<std::size_t> blocks;  // among the parameters
-};
-
 CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
                            const FitResult& fit, double residual_unit) {
   RequirePositive("residual unit", residual_unit);
-  state_ = std::make_unique<State>(records, options, fit, residual_unit);
+  state_ = std::make_unique<State>(records, options, fit);
   State& state = *state_;
-  const Parameters& parameters = state.of.problem->parameters;
+  state.residual = std::make_shared<UnprojectedResidual>(
+      *state.problem, residual_unit / state.data.response_unit());
+  const Parameters& parameters = state.problem->parameters;
   const std::span<const std::size_t> blocks = state.residual->blocks();
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
@@ -89,8 +81,8 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
     }
     state.parameters.push_back(
         {.name = parameters.NameOf(p),
-         .unit = parameters.UnitOf(p, !state.of.data.records.front().velocity.empty()),
-         .theta = state.of.theta[p],
+         .unit = parameters.UnitOf(p, !state.data.records.front().velocity.empty()),
+         .theta = state.theta[p],
          .lower = parameter.lower,
          .upper = parameter.upper,
          .fixed = parameter.fixed,
@@ -128,69 +120,6 @@ void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFun
   for (CeresParameter& parameter : state_->parameters) {
     BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }
-}
-
-struct LogLikelihood::State {
-  State(std::span<const loop::RecordView> records, const FitOptions& options, const FitResult& fit)
-      : of(records, options, fit), residual(of.problem->size()) {}
-
-  ProblemOfFit of;
-  double per_square = 0.0;  // ln L by a squared residual in units of the data
-  std::vector<std::string> names;
-  Response response;
-  std::vector<double> residual;
-};
-
-LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const FitOptions& options,
-                             const FitResult& fit) {
-  RequirePositive("noise of the fit", fit.ResponseNoise());
-  const bool is_forced = fit.response == loop::Channel::kDisplacement;
-  const bool is_inexact =
-      !is_forced && std::ranges::any_of(fit.records, [](const RecordFit& record) {
-        return record.displacement_noise > 0;
-      });
-  if (options.loss != Loss::kNone || is_inexact) {
-    throw InvalidArgument(
-        "a log-likelihood needs samples of equal weight: fit without a robust loss and without "
-        "noise of the displacement");
-  }
-  state_ = std::make_unique<State>(records, options, fit);
-  const Problem& problem = *state_->of.problem;
-  const double effective =
-      std::min(fit.residuals.effective_samples / static_cast<double>(problem.data->counted), 1.0);
-  const double unit = fit.ResponseNoise() / problem.data->response_unit();
-  state_->per_square = -effective / (2 * unit * unit);
-  for (const std::size_t p : problem.parameters.free()) {
-    state_->names.push_back(problem.parameters.NameOf(p));
-  }
-}
-
-LogLikelihood::LogLikelihood(LogLikelihood&&) noexcept = default;
-LogLikelihood& LogLikelihood::operator=(LogLikelihood&&) noexcept = default;
-LogLikelihood::~LogLikelihood() = default;
-
-std::span<const std::string> LogLikelihood::names() const { return state_->names; }
-
-double LogLikelihood::operator()(std::span<const double> values) {
-  constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const Problem& problem = *state_->of.problem;
-  const std::vector<std::size_t>& free = problem.parameters.free();
-  RequireSameSize("values", values.size(), "free parameters", free.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const Parameter& parameter = problem.parameters[free[i]];
-    if (parameter.term->positive && !(values[i] > 0)) return kNone;
-    const double theta = parameter.ToTheta(values[i]);
-    if (!(theta >= parameter.lower && theta <= parameter.upper)) return kNone;
-    state_->of.theta[free[i]] = theta;
-  }
-  try {
-    EvaluateResidual(problem, state_->of.theta, state_->response, state_->residual);
-  } catch (const InvalidArgument&) {  // no law
-    return kNone;
-  }
-  double squares = 0.0;
-  for (const double r : state_->residual) squares += r * r;
-  return std::isfinite(squares) ? state_->per_square * squares : kNone;
 }
 
 }  // namespace mindahl::identification

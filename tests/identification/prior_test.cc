@@ -98,50 +98,5 @@ TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   EXPECT_THAT(refusal(options), HasSubstr("a prior of alpha has no effect"));
 }
 
-/// At the fit −½Σ(r/s)² of its own residuals, and less than that everywhere else.
-TEST(LogLikelihood, IsThatOfTheResidualsAndHighestAtTheFit) {
-  constexpr double kRounding = 1e-9;
-  const Record record = TimedLoop();
-  const FitOptions options = Options();
-  const FitResult fit = FitOne(record, options);
-  const RecordView view(record);
-  LogLikelihood likelihood({&view, 1}, options, fit);
-  std::vector<double> values;
-  std::vector<double> errors;
-  for (const std::string& name : likelihood.names()) {
-    values.push_back(fit.Find(name)->value);
-    errors.push_back(fit.Find(name)->standard_error.value_or(0.0));
-  }
-  double squares = 0.0;
-  for (const double r : fit.records.front().residual) squares += r * r;
-  const double fraction =
-      std::min(fit.residuals.effective_samples / static_cast<double>(record.size()), 1.0);
-  const double highest = likelihood(values);
-  EXPECT_NEAR(highest, -fraction * squares / (2 * *options.force_noise * *options.force_noise),
-              kRounding * std::abs(highest));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (const double sign : {-1.0, 1.0}) {
-      std::vector<double> moved = values;
-      moved[i] += sign * errors[i];
-      // At least the parabola with the others free, 1/2 of a standard error.
-      EXPECT_LT(likelihood(moved), highest - 0.4 * fraction) << likelihood.names()[i];
-    }
-  }
-  std::vector<double> outside = values;
-  outside.front() = -1.0;  // σ
-  EXPECT_EQ(likelihood(outside), -std::numeric_limits<double>::infinity());
-  outside.pop_back();
-  EXPECT_THROW((void)likelihood(outside), InvalidArgument);
-}
-
-TEST(LogLikelihood, IsRefusedWhereWeightsBelongToOneSolution) {
-  const Record record = TimedLoop();
-  FitOptions options = Options();
-  options.loss = Loss::kHuber;
-  const FitResult fit = FitOne(record, options);
-  const RecordView view(record);
-  EXPECT_THROW(LogLikelihood({&view, 1}, options, fit), InvalidArgument);
-}
-
 }  // namespace
 }  // namespace mindahl::identification::prior_test

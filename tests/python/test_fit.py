@@ -311,34 +311,6 @@ def test_a_prior_is_the_program_s(tmp_path):
         mindahl.fit(path, prior={"sigma": 1e7})
 
 
-def test_a_sampler_of_the_log_likelihood_finds_the_intervals():
-    emcee = pytest.importorskip("emcee")
-    rng = np.random.default_rng(5)
-    _, displacement = mindahl.excitation("sine", amplitude=2.5e-6, cycles=2, samples_per_cycle=60)
-    force = mindahl.simulate(displacement, sigma=5e7, slip_force=60.0, alpha=0.4)
-    result = mindahl.fit(displacement, force + 0.3 * rng.standard_normal(force.size),
-                         force_noise=0.3, displacement_noise=0.0, terms="none")
-    likelihood = result.log_likelihood()
-    free = [result.parameters[name] for name in likelihood.names]
-    values = np.array([parameter.value for parameter in free])
-    errors = np.array([parameter.standard_error for parameter in free])
-    assert likelihood(values + errors) < likelihood(values)
-    assert likelihood(-values) == -np.inf
-    with pytest.raises(ValueError):
-        likelihood(values[1:])
-    walkers = 24
-    start = values + 0.5 * errors * rng.standard_normal((walkers, len(values)))
-    sampler = emcee.EnsembleSampler(walkers, len(likelihood.names), likelihood)
-    sampler.random_state = np.random.RandomState(3).get_state()
-    sampler.run_mcmc(start, 600)
-    chain = sampler.get_chain(discard=200, flat=True)
-    for k, name in enumerate(likelihood.names):
-        low, high = np.percentile(chain[:, k], [2.5, 97.5])
-        expected = result.parameters[name].interval
-        # 24 walkers over 400 steps are some 200 independent draws: 0.25 of an error at either end.
-        assert [low, high] == pytest.approx(expected, abs=errors[k]), name
-
-
 def test_every_option_of_the_program_s_fit_is_a_keyword():
     options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help-all"), re.M))
     keywords = set(inspect.signature(mindahl.fit).parameters)

@@ -56,8 +56,6 @@ def test_a_result_of_json_is_shown_and_says_what_it_has_not(tmp_path):
     assert loaded.records == ()
     with pytest.raises(ValueError, match="has no records"):
         loaded.plot()
-    with pytest.raises(ValueError, match="has no likelihood"):
-        loaded.log_likelihood()
     for content in (b"PK nothing", b"\xff", b"[]", b"{", b'{"schema": "mindahl.contact/1"}'):
         (tmp_path / "other").write_bytes(content)
         with pytest.raises(ValueError, match="is no result of a fit"):

@@ -59,33 +59,6 @@ class Fitter {
   std::unique_ptr<State> state_;
 };
 
-/// Log-likelihood of the free parameters of a fit, for samplers of their posterior:
-///   ln L = −½·(n_eff/n)·Σ (rᵢ/s)²  but for a constant
-/// with the standard deviation s of the noise and the effective samples n_eff that the fit states.
-/// Priors are not in it.
-class LogLikelihood {
- public:
-  /// @param records  [m], [N]; those of the fit, which must outlive this
-  /// @param options  those of the fit
-  /// @throws InvalidArgument as the fit does; for a robust loss, noise of the displacement or turns
-  ///   between samples, whose weights and places belong to one solution
-  LogLikelihood(std::span<const loop::RecordView> records, const FitOptions& options,
-                const FitResult& fit);
-  LogLikelihood(LogLikelihood&&) noexcept;
-  LogLikelihood& operator=(LogLikelihood&&) noexcept;
-  ~LogLikelihood();
-
-  /// Returns the names of the free parameters, in the order in which values are taken.
-  [[nodiscard]] std::span<const std::string> names() const;
-  /// Returns ln L; −∞ outside the bounds of the fit and where there is no response.
-  /// @param values  [unit of each]; one of each of names()
-  [[nodiscard]] double operator()(std::span<const double> values);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
 /// Fits all the records together.
 FitResult Fit(std::span<const loop::Record> records, const FitOptions& options = {},
               Depth depth = Depth::kFull);
