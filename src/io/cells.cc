@@ -134,9 +134,9 @@ std::string_view CellCursor::Take() {
   return Trimmed(unescaped_);
 }
 
-Cell ReadCell(std::string_view text) {
+Cell ReadCell(std::string_view text, char delimiter) {
   if (text.find("\u2212") != text.npos) {  // the sign of minus of word processors
-    return ReadCell(boost::replace_all_copy(std::string(text), "\u2212", "-"));
+    return ReadCell(boost::replace_all_copy(std::string(text), "\u2212", "-"), delimiter);
   }
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string_view digits = text;
@@ -151,7 +151,7 @@ Cell ReadCell(std::string_view text) {
   char mark = digits.find('.') == std::string_view::npos ? '\0' : '.';
   std::string with_point;
   std::string_view plain = digits;
-  if (const std::size_t comma = mark == '\0' ? digits.find(',') : digits.npos;
+  if (const std::size_t comma = mark == '\0' && delimiter != ',' ? digits.find(',') : digits.npos;
       comma < digits.size() - 1 && IsDigit(digits[comma + 1])) {
     mark = ',';
     with_point = digits;

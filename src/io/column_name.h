@@ -34,16 +34,14 @@ struct NameEvidence {
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
   std::string name = {};
-  std::string unit = {};        // as written; empty when the header names none
-  std::string other_unit = {};  // a second one, which contradicts it
+  std::string unit = {};  // as written; empty when the header names none
   NameEvidence evidence = {};
 };
 
 /// Takes the unit off a header cell:
 ///   x [um]   F (kN)   F [kN] left   a unit in brackets; at the end also a word that is none known
 ///   Position, mm   x / mm           a unit after the last comma or the first slash
-///   disp_mm   Kraft in N            after the last underscore or blank, a unit of what the name is
-///   x_mm_raw   Disp..mm.   posMm1   a unit of what the name is among its words; of a single letter
+///   disp_mm   posMm_raw             a unit of what the name is among its words; of a single letter
 ///                                   the last word
 /// Brackets without a unit, "pos (3)" and "Load [23.8 N]", are part of the name. A factor beside a
 /// unit, a range in another unit than the SI one, and a word for a ratio, make a unit that is none:
@@ -56,9 +54,6 @@ std::string_view WithoutBrackets(std::string_view cell);
 /// True for the symbol of a unit usual in such files (mm, N, V, bar...), and for a word in
 /// brackets.
 bool LooksLikeUnit(std::string_view cell);
-
-/// Returns the unit among the words of a text, as of a name that has the role; "" without one.
-std::string UnitAmongWords(std::string_view text, Role role);
 
 /// Returns how many of the header cells have a word or a unit that is known.
 std::size_t CountKnownWords(std::span<const std::string> cells);

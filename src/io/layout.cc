@@ -33,7 +33,7 @@ struct Row {
   bool ReadCells(char delimiter) {
     CellCursor cursor(text, delimiter);
     while (cursor.has_next()) {
-      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take())).kind);
+      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter).kind);
       numbers += IsNumber(kinds.back()) ? 1 : 0;
       texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
       if (!cells.back().empty()) filled = cells.size();
@@ -151,7 +151,7 @@ class Reading {
         !names_.empty() && names_.front() == "X_Value" && !layout_.mostly_numbers[0];
     for (const Row& row : std::span(rows_).first(has_no_times ? data_ : 0)) {
       if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
-      const double step = ReadCell(row.cells[1]).value;
+      const double step = ReadCell(row.cells[1], layout_.delimiter).value;
       if (step > 0) layout_.header.interval = step;
     }
 
@@ -162,7 +162,6 @@ class Reading {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (k < names_.size()) columns[k].name = names_[k];
       if (k < units_.size()) columns[k].unit = units_[k];
-      columns[k].grouped = GroupedIn(k);
       // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
       const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
       if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
@@ -321,12 +320,6 @@ class Reading {
               : "");
     }
     layout_.header.header_line = rows_[header].line;
-    for (const Row& row : std::span(rows_).subspan(begin, header - begin)) {
-      const bool speaks = std::ranges::any_of(row.cells, StatesUnits);
-      if (speaks && row.text != layout_.units_row) {
-        layout_.header.unit_lines.emplace_back(row.line, row.text);
-      }
-    }
     if (header > 0) {
       layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
                                                  rows_[header].line, header,
@@ -343,40 +336,6 @@ class Reading {
     if (!cells || CountKnownWords(*cells) < 2) return;
     names_ = *std::move(cells);
     layout_.header.header_line = comment.line;
-  }
-
-  /// Returns what is said of a column whose marks seem to separate thousands: all of them have
-  /// three digits behind them, and the other numbers are whole and below 1000. Between commas, in
-  /// quotation marks, there need be no other.
-  std::string GroupedIn(std::size_t column) const {
-    const Row* grouped = nullptr;  // the first
-    bool has_whole = false;
-    for (const Row& row : std::span(rows_).subspan(data_)) {
-      if (column >= row.cells.size() || row.kinds[column] != Cell::Kind::kNumber) continue;
-      std::string_view number = row.cells[column];
-      if (number.starts_with('-')) number.remove_prefix(1);
-      const std::size_t mark = number.find_first_not_of("0123456789");
-      const std::string_view group = number.substr(std::min(mark, number.size() - 1) + 1);
-      if (number.substr(0, mark).size() > 3) return "";
-      if (mark == std::string_view::npos) {
-        has_whole = has_whole || number != "0";
-      } else if ((number[mark] == '.' || number[mark] == ',') && group.size() == 3 &&
-                 !number.starts_with('0') &&
-                 group.find_first_not_of("0123456789") == std::string_view::npos) {
-        if (grouped == nullptr) grouped = &row;
-      } else {
-        return "";
-      }
-    }
-    if (grouped == nullptr) return "";
-    const bool is_quoted =
-        layout_.delimiter == ',' && grouped->cells[column].find(',') != std::string::npos;
-    if (!has_whole && !is_quoted) return "";
-    return fmt::format(
-        "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have three "
-        "digits behind them and the other numbers are whole: write it without; if it is a decimal "
-        "mark, multiply the column by 1, as in ",
-        layout_.header.file, grouped->line, column + 1, grouped->cells[column]);
   }
 
   Layout layout_;

@@ -143,10 +143,6 @@ class RecordBuilder {
       RequireNoSignBit(names, quantity);
     }
     const std::vector<TableColumn>& columns = names.table().columns;
-    if (is_plain && !columns[first].grouped.empty()) {
-      Refuse("{}{} '#{}*1 [{}]'", columns[first].grouped, RulesOf(role).option, first + 1,
-             quantity.unit.symbol);
-    }
     for (const Quantity::Term& term : quantity.terms) {
       if (columns[term.column].values.empty())
         static_cast<void>(names.table().Numbers(term.column));
@@ -239,7 +235,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
   const std::size_t most = choices.size() + kMostOtherColumns;
   for (std::size_t column = 0; column < names.size(); ++column) {
-    if (is_read[column] || names[column].is_clock || !names[column].other_unit.empty()) continue;
+    if (is_read[column] || names[column].is_clock) continue;
     if (file.record.covariates.size() < most) add(column, names.NameOf(column), false);
   }
 }

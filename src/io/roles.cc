@@ -67,16 +67,6 @@ bool IsCounter(const std::vector<double>& values) {
          std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
 }
 
-/// Returns the mean step from row to row over the range: it is large where that is mere noise.
-double MeanStep(const std::vector<double>& values, double range) {
-  double path = 0.0;
-  for (std::size_t row = 1; row < values.size(); ++row) {
-    const double step = std::abs(values[row] - values[row - 1]);
-    if (std::isfinite(step)) path += step;
-  }
-  return path / range / static_cast<double>(values.size());
-}
-
 /// Returns the evidence that a column has a role: 0 is none. A unit counts more than a word.
 int EvidenceFor(const ColumnNames::Column& column, Role role) {
   constexpr int kUnit = 100;
@@ -123,13 +113,6 @@ std::string UnitOfStamp(double number) {
   return "";
 }
 
-/// Returns the unit that a time has without stating it: "millis", or that of a stamp.
-std::string ImpliedTimeUnit(std::string_view word, double first) {
-  if (word == "ms" || word == "millis" || word == "msec") return "ms";
-  if (word == "micros") return "us";
-  return word == "nanos" ? "ns" : UnitOfStamp(first);
-}
-
 class RoleAssigner {
  public:
   RoleAssigner(const ColumnNames& names, std::vector<std::string>& notes)
@@ -160,10 +143,8 @@ class RoleAssigner {
     TakeLeft();
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement);
-    if (finds_force) RequireNoLoad();
-    RequireForce();
+    RequireNoCoefficient(finds_force);
     TakeMagnitudeOfLoad();
-    if (finds_displacement) NoteTravelOfMachine();
     const bool is_torsional = RequireOneKind();
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
     for (Quantity& quantity : roles_) {
@@ -199,14 +180,7 @@ class RoleAssigner {
   void TakeFound(Role role, const std::vector<bool>& taken) {
     if (!IsMissing(role)) return;
     if (const auto found = names_.Best(role, taken)) return Take(*found, role);
-    for (std::size_t named = 0; named < taken.size() && role == Role::kTime; ++named) {
-      if (taken[named] || !names_[named].evidence.names(role)) continue;
-      notes_.push_back(fmt::format("{}: time {} has no numbers in a unit of time: left out", file_,
-                                   names_.Label(named)));
-    }
-    if (Of(role).given_unit.empty()) return;
-    Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
-           Of(role).given_unit, RulesOf(role).name);
+    if (!Of(role).given_unit.empty()) ThrowNoColumn(role);
   }
 
   /// Takes a "load" as the normal one beside what is a friction force by its name.
@@ -227,18 +201,12 @@ class RoleAssigner {
   /// Adds to a stamp of whole seconds, "header.stamp.sec", the column of its nanoseconds.
   void AddNanoseconds() {
     if (IsMissing(Role::kTime)) return;
-    const std::size_t seconds = ColumnOf(Role::kTime);
-    const std::string stamp = LowerCase(names_[seconds].name);
-    if (!stamp.ends_with("sec") && !stamp.ends_with("secs")) return;
+    const std::string stamp = LowerCase(names_[ColumnOf(Role::kTime)].name);
+    const std::size_t at = stamp.rfind("sec");
     for (const std::string_view prefix : {"nano", "n"}) {
-      const std::string name = std::string(stamp).insert(stamp.rfind("sec"), prefix);
-      const auto column = names_.Named(name, Role::kTime);
-      if (!column || taken_[*column] || !names_[*column].is_numeric) continue;
-      taken_[*column] = true;
-      Of(Role::kTime).terms.push_back({*column, 1e-9});
-      notes_.push_back(fmt::format("{}: time {} with the nanoseconds of {}", file_,
-                                   names_.Label(seconds), names_.Label(*column)));
-      return;
+      if (at == std::string::npos) return;
+      const auto column = names_.Named(std::string(stamp).insert(at, prefix), Role::kTime);
+      if (column && !taken_[*column]) return Of(Role::kTime).terms.push_back({*column, 1e-9});
     }
   }
 
@@ -271,14 +239,14 @@ class RoleAssigner {
   void FindPair() {
     constexpr int kMismatch = 40;
     constexpr int kComplete = 60;  // of two columns by their words
-    constexpr double kNoise = 4;
     constexpr std::array kPair = {Role::kDisplacement, Role::kForce};
+    const bool is_free = IsMissing(kPair[0]) && IsMissing(kPair[1]);
     const auto displacements = CandidatesFor(kPair[0]);
     if (!displacements.front() && LeftColumns().empty()) ThrowNoColumn(kPair[0]);
     int most = -kMismatch;
     std::array<std::set<std::size_t>, 2> best;
-    std::array<int, 2> most_of_kind = {};  // of a force by a length, and of a torque by an angle
-    std::array<std::array<std::size_t, 2>, 2> best_of_kind = {};
+    // The displacements of a force by a length, and of a torque by an angle.
+    std::array<std::optional<std::size_t>, 2> of_kind;
     for (const std::optional<std::size_t> force : CandidatesFor(kPair[1])) {
       for (const std::optional<std::size_t> displacement : displacements) {
         if (displacement && displacement == force) continue;
@@ -288,10 +256,8 @@ class RoleAssigner {
         if (displacement) evidence += EvidenceFor(names_[*displacement], kPair[0]);
         if (force) evidence += EvidenceFor(names_[*force], kPair[1]);
         const bool kind = turns.value_or(false);
-        if (displacement && force && kind == twists.value_or(false) &&
-            evidence > most_of_kind[kind ? 1 : 0]) {
-          most_of_kind[kind ? 1 : 0] = evidence;
-          best_of_kind[kind ? 1 : 0] = {*displacement, *force};
+        if (displacement && force && kind == twists.value_or(false) && evidence > kComplete) {
+          of_kind[kind ? 1 : 0] = displacement;
         }
         if (evidence < most) continue;
         if (evidence > std::exchange(most, evidence)) best = {};
@@ -299,20 +265,8 @@ class RoleAssigner {
         if (force) best[1].insert(*force);
       }
     }
-    if (const bool is_free = IsMissing(kPair[0]) && IsMissing(kPair[1]);
-        is_free && std::ranges::min(most_of_kind) > kComplete) {
-      // The one that is mere noise rests.
-      const auto [line, turn] = best_of_kind;
-      const auto step = [&](std::size_t column) {
-        const double range = names_[column].greatest - names_[column].least;
-        return MeanStep(names_.table().columns[column].values, range);
-      };
-      const double ratio = step(line[0]) / step(turn[0]);
-      if (ratio < kNoise && 1 / ratio < kNoise) {
-        names_.ThrowAmbiguous(kPair[0], {line[0], turn[0]});
-      }
-      const auto& moving = ratio > 1 ? turn : line;
-      for (const std::size_t k : {0U, 1U}) best[k] = {moving[k]};
+    if (is_free && of_kind[0] && of_kind[1]) {
+      names_.ThrowAmbiguous(kPair[0], {*of_kind[0], *of_kind[1]});
     }
     // The only column with evidence has it of both.
     if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
@@ -340,59 +294,49 @@ class RoleAssigner {
     std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
     if (missing.empty()) return;
     std::vector<std::size_t> left = LeftColumns();
-    std::string why;
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
         return names_[column].trend != 0 || !(names_[column].greatest > names_[column].least);
       });
-      why = ", of those that neither stay nor only grow";
     }
     if (left.size() != missing.size()) ThrowNoColumn(missing.front());
     for (std::size_t k = 0; k < left.size(); ++k) {
       Take(left[k], missing[k]);
-      notes_.push_back(
-          fmt::format("{}: no column name is recognised as {}: taken from {}, {}{}", file_,
-                      RulesOf(missing[k]).name, names_.Label(left[k]),
-                      left.size() == 1 ? "the only one left" : "the two left in their order", why));
+      notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}", file_,
+                                   RulesOf(missing[k]).name, names_.Label(left[k])));
     }
   }
 
-  /// Refuses a coefficient of friction, one by its name or else by its numbers, as the force.
-  [[noreturn]] void ThrowCoefficient(std::size_t column, double greatest = 0) const {
-    const bool is_named = names_[column].evidence.names(Role::kFrictionCoefficient);
-    Refuse(
-        "{}:{}: {} {}: choose the force with --force, or multiply by the normal load, where that "
-        "is 50 N by --force '#{}*50 [N]'{}",
-        names_.Header(), column + 1, names_.Label(column),
-        is_named ? "is a coefficient of friction and no force"
-                 : fmt::format("without a unit and with all values below {} looks like a "
-                               "coefficient of friction",
-                               greatest),
-        column + 1,
-        is_named ? "" : fmt::format("; if it is a force, say so by --force '{} [N]'", column + 1));
-  }
-
-  /// Refuses a load as the force, the only one of the file, which never changes its sign, beside a
-  /// coefficient of friction or what seems to be one.
-  void RequireNoLoad() {
-    constexpr double kGreatest = 5;
-    const std::size_t force = ColumnOf(Role::kForce);
-    std::optional<std::size_t> coefficient;
+  /// Refuses a coefficient of friction as the force: one by its name, or a friction without a unit
+  /// and below 2 beside a load in newton; and that load, where it never changes its sign. Whoever
+  /// gives a unit is believed.
+  void RequireNoCoefficient(bool finds_force) const {
+    constexpr double kGreatest = 2;
+    const Quantity& force = roles_[static_cast<std::size_t>(Role::kForce)];
+    if (!force.given_unit.empty() || force.is_scaled) return;
+    const std::size_t taken = force.first_column();
+    std::vector<std::size_t> coefficients;
+    std::size_t loads = 0;
     for (std::size_t column = 0; column < names_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const NameEvidence& evidence = of.evidence;
-      if (column == force || !of.is_numeric || evidence.is_lesser) continue;
-      const bool has_unit = !of.unit.empty() && of.unit != "-";
-      const bool may_be = (evidence.word == "friction" || evidence.word == "f") && !has_unit &&
-                          of.GreatestMagnitude() < kGreatest;
-      if (may_be || evidence.names(Role::kFrictionCoefficient)) {
-        coefficient = column;
-      } else if (MayHaveRole(of.dimension, Role::kForce) || evidence.names(Role::kNormalLoad)) {
-        return;
+      const bool is_friction = of.evidence.word == "friction" || of.evidence.word == "f";
+      if (of.dimension == Dimension::kForce || of.evidence.names(Role::kNormalLoad)) ++loads;
+      if (of.evidence.names(Role::kFrictionCoefficient) ||
+          (is_friction && of.unit.empty() && of.GreatestMagnitude() < kGreatest)) {
+        coefficients.push_back(column);
       }
     }
-    const bool keeps_sign = names_[force].least > 0 || names_[force].greatest < 0;
-    if (coefficient && keeps_sign) ThrowCoefficient(*coefficient, kGreatest);
+    const bool keeps_sign = names_[taken].least > 0 || names_[taken].greatest < 0;
+    for (const std::size_t column : coefficients) {
+      const bool is_named = names_[column].evidence.names(Role::kFrictionCoefficient);
+      const bool is_taken = column == taken && (is_named || loads > 0);
+      if (!is_taken && !(column != taken && finds_force && keeps_sign && loads < 2)) continue;
+      Refuse(
+          "{}:{}: {} is a coefficient of friction, or looks like one, and no force: choose the "
+          "force with --force, or multiply by the normal load, where that is 50 N by --force "
+          "'#{}*50 [N]'; if it is a force, say so by --force '{} [N]'",
+          names_.Header(), column + 1, names_.Label(column), column + 1, column + 1);
+    }
   }
 
   /// Takes the magnitude of a load that is negative throughout.
@@ -401,80 +345,32 @@ class RoleAssigner {
     if (!load.is_plain()) return;
     const ColumnNames::Column& of = names_[load.first_column()];
     if (!(of.greatest < 0)) return;
-    load.is_magnitude = true;
     load.terms.front().weight = -1.0;
     notes_.push_back(
         fmt::format("{}: normal load {} is negative throughout: its magnitude is taken", file_,
                     names_.Label(load.first_column())));
   }
 
-  /// Names what else may be the displacement where an extensometer is.
-  void NoteTravelOfMachine() {
-    const std::size_t taken = ColumnOf(Role::kDisplacement);
-    const std::string_view word = names_[taken].evidence.word;
-    if (word != "extensometer" && word != "*wegaufnehmer") return;
-    for (std::size_t column = 0; column < names_.size(); ++column) {
-      const ColumnNames::Column& of = names_[column];
-      const bool may_be = of.dimension == Dimension::kLength && of.goes_to_and_fro;
-      if (taken_[column] || !may_be) continue;
-      notes_.push_back(
-          fmt::format("{}: displacement {} is taken, and not {}, in which the rig "
-                      "yields too",
-                      file_, names_.Label(taken), names_.Label(column)));
-    }
-  }
-
-  /// Refuses a coefficient of friction as the force, also a friction without a unit and below 2
-  /// beside a load in newton. Whoever gives it a unit is believed.
-  void RequireForce() {
-    const Quantity& force = Of(Role::kForce);
-    const std::size_t column = force.first_column();
-    const ColumnNames::Column& of = names_[column];
-    if (!force.given_unit.empty() || force.is_scaled || of.dimension) return;
-    const auto is_load = [&](std::size_t other) {
-      return names_[other].dimension == Dimension::kForce;
-    };
-    constexpr double kGreatest = 2;
-    const bool is_low = of.GreatestMagnitude() < kGreatest;
-    const bool may_be =
-        of.evidence.word == "friction" && of.unit.empty() && is_low &&
-        std::ranges::any_of(std::views::iota(std::size_t{0}, names_.size()), is_load);
-    if (of.evidence.names(Role::kFrictionCoefficient) || may_be) {
-      ThrowCoefficient(column, kGreatest);
-    }
-  }
-
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
     for (std::size_t column = 0; column < names_.size(); ++column) {
-      if (role == Role::kForce && names_[column].evidence.names(Role::kFrictionCoefficient)) {
-        ThrowCoefficient(column);
-      }
-      const TableColumn& of = names_.table().columns[column];
-      const bool may_be = EvidenceFor(names_[column], role) > 0;
-      if (names_[column].is_numeric || (!may_be && !of.name.empty())) continue;
-      if (!of.values.empty() && !of.broken.empty()) throw InputError(of.broken);
-      if (!may_be) continue;
-      Refuse(
-          "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
-          file_, names_.Label(column), rules.name, rules.option);
+      const bool is_named = !names_.table().columns[column].name.empty();
+      if (names_[column].is_numeric || (is_named && EvidenceFor(names_[column], role) == 0))
+        continue;
+      static_cast<void>(names_.table().Numbers(column));  // throws
     }
-    Refuse("{}: no column for the {}: {}", file_, rules.name,
-           names_.size() == 1 ? "the file has 1 column"
-                              : names_.Listing() +
-                                    ": name the column of the displacement with --displacement "
-                                    "and that of the force with --force, by name or number");
+    Refuse("{}: no column for the {}: {}: choose it with {}, by name or number", file_, rules.name,
+           names_.Listing(), rules.option);
   }
 
-  /// Refuses a column of little evidence whose numbers are those of a clock or a counter, where
-  /// those of the other role go to and fro. A word is enough for a displacement that only grows,
-  /// but for the X of a report; a force needs its unit.
+  /// Refuses a column without a unit whose numbers are those of a clock or a counter, where those
+  /// of the other role go to and fro.
   void RequireMoving(Role role, Role other) {
+    constexpr int kUnit = 100;
     const std::size_t column = ColumnOf(role);
     const ColumnNames::Column& of = names_[column];
-    const bool needs_unit = role == Role::kForce || of.evidence.word == "X";
-    if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= (needs_unit ? 100 : 1) ||
-        of.trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
+    if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= kUnit || of.trend == 0 ||
+        !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
     }
     Refuse(
@@ -491,16 +387,11 @@ class RoleAssigner {
     const auto twists = IsAngular(ColumnOf(Role::kForce), Role::kForce);
     const bool is_torsional = turns == true || twists == true;
     if (!is_torsional || (turns != false && twists != false)) return is_torsional;
-    const auto unit = [&](Role role) {
-      const std::string stated =
-          Of(role).given_unit.empty() ? names_.UnitOf(ColumnOf(role), role) : Of(role).given_unit;
-      return stated.empty() ? SiUnit(RulesOf(role).angular) : stated;
-    };
     Refuse(
-        "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
-        "choose other columns, or give their units, as in --force '{} [N]'",
-        file_, names_.Label(ColumnOf(Role::kDisplacement)), unit(Role::kDisplacement),
-        names_.Label(ColumnOf(Role::kForce)), unit(Role::kForce), ColumnOf(Role::kForce) + 1);
+        "{}: {} and {} do not match: a torque needs an angle, a force a length: choose other "
+        "columns, or give their units, as in --force '{} [N]'",
+        file_, names_.Label(ColumnOf(Role::kDisplacement)), names_.Label(ColumnOf(Role::kForce)),
+        ColumnOf(Role::kForce) + 1);
   }
 
   const ColumnNames& names_;
@@ -545,9 +436,12 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
     columns_.push_back(ObservedIn(column.values));
     Column& added = columns_.back();
     static_cast<ColumnName&>(added) = SplitColumnName(column.name);
-    const std::string_view of_row = WithoutBrackets(column.unit);
-    if (added.unit.empty()) added.unit = of_row;
-    if (!of_row.empty() && of_row != added.unit) added.other_unit = of_row;
+    if (added.unit.empty()) added.unit = WithoutBrackets(column.unit);
+    // "millis"
+    if (added.unit.empty() && added.evidence.names(Role::kTime) &&
+        DimensionOf(added.name) == Dimension::kTime) {
+      added.unit = added.name;
+    }
     added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
     // "N" counts cycles or rows.
@@ -599,12 +493,11 @@ std::size_t ColumnNames::Chosen(const std::string& text, Role role) const {
 
 std::string ColumnNames::UnitOf(std::size_t column, Role role) const {
   const std::string& unit = columns_[column].unit;
-  const std::string& other_unit = columns_[column].other_unit;
-  if (other_unit.empty()) return unit;
-  Refuse("{}: {} has the unit '{}' in its name and '{}' {}: choose its unit with {} '{} [{}]'",
-         Header(), Label(column), unit, other_unit,
-         WithoutBrackets(table_.columns[column].unit) == other_unit ? "below it" : "too",
-         RulesOf(role).option, column + 1, unit);
+  const std::string_view of_row = WithoutBrackets(table_.columns[column].unit);
+  if (of_row.empty() || of_row == unit) return unit;
+  Refuse(
+      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit with {} '{} [{}]'",
+      Header(), Label(column), unit, of_row, RulesOf(role).option, column + 1, unit);
 }
 
 std::string ColumnNames::NameOf(std::size_t column) const {
@@ -671,31 +564,18 @@ void ColumnNames::FindUnitOf(Quantity& quantity, bool is_torsional,
     return;
   }
   if (is_given || (!symbol.empty() && !quantity.is_scaled)) {
-    const std::string where = is_given ? table_.file : fmt::format("{}:{}", Header(), first + 1);
-    if (DimensionOf(symbol) == Dimension::kPressure) {
-      Refuse(
-          "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is "
-          "an additional force, for which there is --covariate",
-          where, Label(first), symbol, name);
-    }
-    const bool has_factor = symbol.find_first_of("0123456789") != symbol.npos;
     Refuse(
-        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]'{}",
-        where, ForMessage(symbol), Label(first), name, UnitSymbols(dimension), option, first + 1,
-        assumed,
-        has_factor ? fmt::format(", or with a factor '#{}*0.001 [{}]'", first + 1, assumed) : "");
+        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
+        "or "
+        "with a factor '#{}*0.001 [{}]'",
+        is_given ? table_.file : fmt::format("{}:{}", Header(), first + 1), ForMessage(symbol),
+        Label(first), name, UnitSymbols(dimension), option, first + 1, assumed, first + 1, assumed);
   }
   if (symbol.empty()) {
-    for (const auto& [line, text] : table_.unit_lines) {
-      const std::string stated = UnitAmongWords(text, quantity.role);
-      if (stated.empty() || stated == assumed) continue;
-      Refuse("{}:{}: '{}' states a unit in no column: choose it with {} '{} [{}]'", table_.file,
-             line, ForMessage(text), option, first + 1, stated);
-    }
     quantity.has_no_unit = true;
-    if (quantity.role == Role::kTime && !quantity.is_scaled) {
-      const std::string implied = ImpliedTimeUnit(of.evidence.word, of.first);
-      if (!implied.empty()) assumed = implied;
+    if (const std::string of_stamp = UnitOfStamp(of.first);
+        quantity.role == Role::kTime && !quantity.is_scaled && !of_stamp.empty()) {
+      assumed = of_stamp;
     }
     notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
                                 table_.file, name, Label(first), assumed, option, first + 1,
@@ -708,12 +588,9 @@ void ColumnNames::SetOriginOf(Quantity& time, std::vector<std::string>& notes) c
   const Column& of = columns_[time.first_column()];
   const bool is_stamp = !time.is_scaled && UnitOfStamp(of.first) == time.unit.symbol;
   if (!of.is_clock && !is_stamp) return;
-  time.offset -= of.is_clock ? kDay * std::floor(of.first / kDay) : of.first;
-  notes.push_back(
-      fmt::format("{}: time {} holds {}", table_.file, Label(time.first_column()),
-                  of.is_clock ? "times of day: taken as seconds since midnight of the first one's "
-                                "day"
-                              : "stamps since 1970: taken as seconds since the first"));
+  time.offset -= of.first;
+  notes.push_back(fmt::format("{}: time {} holds dates or times of day: counted from the first",
+                              table_.file, Label(time.first_column())));
 }
 
 std::vector<Quantity> AssignRoles(const ColumnNames& names, const RecordColumns& columns,

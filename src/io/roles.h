@@ -37,14 +37,14 @@ struct Quantity {
   double offset = -0.0;          ///< to which adding -0 makes -0
   bool is_scaled = false;        ///< a factor or an offset is given
   std::string given_unit = {};   // "" where none is given
-  bool is_magnitude = false;     // of a column that is negative throughout
   Unit unit = {};                // set by ColumnNames::FindUnitOf()
   bool has_no_unit = false;      ///< the unit is assumed
 
   [[nodiscard]] std::size_t first_column() const { return terms.front().column; }
-  /// True if it is a column as it is.
+  /// True if it is a column as it is, or the magnitude of a load.
   [[nodiscard]] bool is_plain() const {
-    return terms.size() == 1 && !is_scaled && (is_magnitude || terms.front().weight == 1.0);
+    return terms.size() == 1 && !is_scaled &&
+           (role == Role::kNormalLoad || terms.front().weight == 1.0);
   }
   /// Returns its value in a row, in its unit.
   [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const {
@@ -104,8 +104,7 @@ class ColumnNames {
   /// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
   /// @throws InputError for a unit that is none of the role's, and for columns in several units
   void FindUnitOf(Quantity& quantity, bool is_torsional, std::vector<std::string>& notes) const;
-  /// Lets a time count from the first stamp since 1970, or from midnight before the first time of
-  /// day, with a note.
+  /// Lets a time count from the first stamp since 1970, or the first time of day, with a note.
   void SetOriginOf(Quantity& time, std::vector<std::string>& notes) const;
 
   /// Returns the unit that the file states for a column, "" when it states none.

@@ -125,7 +125,7 @@ void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
 
 /// Reads a cell that is not plainly a number.
 void TableReader::ReadCell(std::size_t column, std::string_view text) {
-  const Cell cell = io::ReadCell(text);
+  const Cell cell = io::ReadCell(text, layout_.delimiter);
   const TableColumn& of = table_.columns[column];
   values_[column] = cell.value;
   if (cell.kind == Cell::Kind::kClock) {
@@ -170,7 +170,8 @@ bool TableReader::BelongsToHeader(std::string_view row) {
     if (cells.has_next()) cells.Skip();
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
-  if (column == layout_.columns() || io::ReadCell(first).kind != Cell::Kind::kText) {
+  if (column == layout_.columns() ||
+      io::ReadCell(first, layout_.delimiter).kind != Cell::Kind::kText) {
     return false;
   }
   if (gap_ && !gap_->fault.empty()) return true;

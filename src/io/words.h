@@ -76,7 +76,7 @@ inline constexpr std::array kWords = {
     WordRow{
         Role::kFrictionCoefficient, 0, false,
         "coefficient of friction|friction coefficient|coef of friction|coeff of friction|friction "
-        "coeff|"
+        "coeff|q p|ft fn|"
         "cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|*reibkoeffizient|*"
         "reibungskoeffizient|"
         "coefficient de frottement|coeficiente de fricción|coeficiente de friccion|"

@@ -116,17 +116,10 @@ TEST(RecordReader, NotesWhatItAssumes) {
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"),
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
   EXPECT_EQ(
-      Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
-      (Strings{"loop.csv: time 'time' (column 1) has no numbers in a unit of time: left out"}));
-  EXPECT_EQ(Notes("timestamp_ms,x [m],F [N]\n1709633472000,1.5,2.5\n"),
-            (Strings{"loop.csv: time 'timestamp_ms' (column 1) holds stamps since 1970: taken as "
-                     "seconds since the first"}));
-  EXPECT_EQ(Notes("millis,x [m],F [N]\n1,1.5,2.5\n"),
-            (Strings{"loop.csv: time 'millis' (column 1) names no unit: taken as ms; --time '1 "
-                     "[ms]' says so"}));
-  EXPECT_EQ(Notes("time [week],x [m],F [N]\n1,1.5,2.5\n2,3.5,4.5\n"),
-            (Strings{"loop.csv: time 'time [week]' (column 1) has no numbers in a unit of time: "
-                     "left out"}));
+      Notes("timestamp_ms,x [m],F [N]\n1709633472000,1.5,2.5\n"),
+      (Strings{"loop.csv: time 'timestamp_ms' (column 1) holds dates or times of day: counted "
+               "from the first"}));
+  EXPECT_EQ(Notes("millis,x [m],F [N]\n1,1.5,2.5\n"), Strings{});
 }
 
 // A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
@@ -145,29 +138,25 @@ x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the d
    one by its number, as --displacement 1
 x [mm],x [V],F¶1,2,3¶ | x | - | :1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the
    displacement: choose one by its number, as --displacement 1
-x¶1¶ | - | - | : no column for the force: the file has 1 column
+x¶1¶ | - | - | : no column for the force: the columns are 'x' (1): choose it with --force, by name
+   or number
 x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
-   must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]'
+   must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]', or with a factor
+   '#1*0.001 [m]'
 ¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
    force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
-   --force '3 [N]'
-t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'N x10' of 'F (N x10)' (column 3) is not known
+   --force '3 [N]', or with a factor '#3*0.001 [N]'
+t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'x10' of 'F (N x10)' (column 3) is not known
    for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
    --force '3 [N]', or with a factor '#3*0.001 [N]'
-x (1e-5 m),F [N]¶1,2¶ | - | - | :1:1: the unit '1e-5 m' of 'x (1e-5 m)' (column 1) is not known
-   for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
-   --displacement '1 [m]', or with a factor '#1*0.001 [m]'
-x [m],p [bar]¶1,2¶ | - | p | :1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force:
-   choose another column; pressure times area is an additional force, for which there is
-   --covariate
-x [m],F¶1,2¶ | - | [MPa] | : 'F' (column 2) is a pressure, in MPa, and no force: choose another
-   column; pressure times area is an additional force, for which there is --covariate
-¶t,x [m],Torque [Nm]¶1,2,3¶ | - | - | : 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in
-   Nm do not match: a torque needs an angle, a force a length; choose other columns, or give their
-   units, as in --force '3 [N]'
-angle,F¶1,2¶ | - | [kN] | : 'angle' (column 1) in rad and 'F' (column 2) in kN do not match: a
-   torque needs an angle, a force a length; choose other columns, or give their units, as in
-   --force '2 [N]'
+x [m],p [bar]¶1,2¶ | - | p | :1:2: the unit 'bar' of 'p [bar]' (column 2) is not known for the
+   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
+   --force '2 [N]', or with a factor '#2*0.001 [N]'
+¶t,x [m],Torque [Nm]¶1,2,3¶ | - | - | : 'x [m]' (column 2) and 'Torque [Nm]' (column 3) do not
+   match: a torque needs an angle, a force a length: choose other columns, or give their units, as
+   in --force '3 [N]'
+angle,F¶1,2¶ | - | [kN] | : 'angle' (column 1) and 'F' (column 2) do not match: a torque needs an
+   angle, a force a length: choose other columns, or give their units, as in --force '2 [N]'
 left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
    and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
    number: the columns are 'left' (1), 'F' (2)
@@ -176,10 +165,10 @@ time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6:
    clock starts again, or rename the column if it holds no time
 x,F¶furlong,N¶1,2¶ | - | - | :1:1: the unit 'furlong' of 'x' (column 1) is not known for the
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
-   --displacement '1 [m]'
+   --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x / m/s,F¶1,2¶ | - | - | :1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
-   --displacement '1 [m]'
+   --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [mm],F¶um,N¶1,2¶ | - | - | :1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below
    it: choose its unit with --displacement '1 [mm]'
 x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3:2: force = 1e+307 kN is too large: must be below 1.8e308
@@ -205,8 +194,9 @@ TEST(RecordReader, TakesASingleStrokeForOne) {
   // A noisy force along one stroke wavers, it does not go back by half its range.
   const Numbers stroke = {0, 1, 2, 3, 4};
   EXPECT_EQ(Read("0,0\n1,3\n2,2.5\n3,5\n4,4.6\n").record.displacement, stroke);
-  // By name it may be whatever it is.
-  EXPECT_EQ(Read("x,F\n0,0\n1,3\n2,-2\n3,5\n4,0\n").record.displacement, stroke);
+  EXPECT_THAT(Refusal("x,F\n0,0\n1,3\n2,-2\n3,5\n4,0\n"), HasSubstr("'x' (column 1) only grows"));
+  // With a unit, or chosen, it may be whatever it is.
+  EXPECT_THAT(Read("x [m],F\n0,0\n1,3\n2,-2\n3,5\n4,0\n").record.displacement, stroke);
   EXPECT_EQ(Read("0,0\n1,3\n2,-2\n3,5\n4,0\n", Choose("1")).record.displacement, stroke);
 }
 

@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace mindahl::io {
@@ -34,8 +33,6 @@ struct TableColumn {
   bool is_clock = false;  ///< its numbers are times of day [s]
   /// Say of the first NaN, and of the first infinite value: "file:line:column: …".
   std::string missing = {}, broken = {};
-  /// The same of the first cell with a mark that seems to separate thousands.
-  std::string grouped = {};
 };
 
 /// A delimited text of columns. Positions in messages are `file:line:column`, with the 1-based
@@ -47,8 +44,6 @@ struct CsvTable {
   std::vector<std::size_t> blocks = {};  ///< rows below a header that is repeated among them
   std::size_t header_line = 0;           ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
-  /// Lines above the header that speak of a unit, "Force unit: kN", which is no column's.
-  std::vector<std::pair<std::size_t, std::string>> unit_lines = {};
   std::vector<std::string> notes = {};  ///< sentences on what was assumed of the file
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }

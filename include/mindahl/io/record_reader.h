@@ -75,12 +75,13 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// while the other goes to and fro, and a register with a sign bit are refused, with the columns.
 ///
 /// *Units.* As given; else of the header, where two that differ are an error; else m, N, s, with a
-/// note, unless a line above the header states another. An angle and a torque go
-/// together: one of the two has the other's unit, rad or N m, where it names none.
+/// note. An angle and a torque go together: one of the two has the other's unit, rad or N m, where
+/// it names none.
 ///
-/// *Time.* A number; a stamp since 1970, in s, ms, us or ns, taken as seconds since the first; or a
-/// time of day, perhaps behind a date ("2024-03-05T10:11:12.5"), as seconds since midnight of the
-/// first one's day: both with a note. In a further block of rows a clock may begin anew.
+/// *Time.* A number; a stamp since 1970, in s, ms, us or ns, or a time of day, perhaps behind a
+/// date
+/// ("2024-03-05T10:11:12.5"), which count from the first row, with a note. In a further block of
+/// rows a clock may begin anew.
 ///
 /// *Rows.* A row in which a cell that is used is empty or holds a mark of a missing number is left
 /// out, with a note; more than one in a hundred are an error, unless broken rows are skipped.
