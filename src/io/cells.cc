@@ -82,22 +82,11 @@ std::optional<double> ReadClock(std::string_view text) {
 
 }  // namespace
 
-std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes) {
-  const std::size_t first = std::min(text.find('\n'), text.size());
-  std::size_t end = first;
-  std::size_t taken = 1;
-  bool is_open = false;
-  for (std::size_t from = 0; has_quotes; ++taken) {
-    is_open ^= std::ranges::count(text.substr(from, end - from), '"') % 2 != 0;
-    if (!is_open || end == text.size()) break;
-    from = end;
-    end = std::min(text.find('\n', from + 1), text.size());
-  }
-  if (is_open) end = first;  // never closed: a fault of its first line
-  lines += is_open ? 1 : taken;
-  const std::string_view row = text.substr(0, end);
+std::string_view TakeLine(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
-  return row.ends_with('\r') ? row.substr(0, row.size() - 1) : row;
+  return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
 }
 
 bool IsBlankOrComment(std::string_view line) {
@@ -116,20 +105,17 @@ std::string_view CellCursor::Take() {
     return cell;
   }
   unescaped_.clear();
-  const auto add = [this](char character) {
-    unescaped_ += character == '\n' || character == '\r' ? ' ' : character;
-  };
   for (++end; end != end_; ++end) {
     if (*end == '"') {
       if (end + 1 == end_ || end[1] != '"') break;
       ++end;
     }
-    add(*end);
+    unescaped_ += *end;
   }
   is_open_ = end == end_;
   has_next_ = !is_open_;
   if (is_open_) return unescaped_.insert(0, 1, '"');
-  for (++end; end != end_ && !IsDelimiter(*end); ++end) add(*end);
+  for (++end; end != end_ && !IsDelimiter(*end); ++end) unescaped_ += *end;
   GoBehind(end);
   return Trimmed(unescaped_);
 }
@@ -190,12 +176,11 @@ std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {
   if (kind == Cell::Kind::kMissing) {
     return fmt::format("'{}' is not a number: fill in the cell or remove the row", shown);
   }
-  const bool has_groups = text.find(',', 1) != text.npos && !text.starts_with(',') &&
-                          text.find_first_not_of("0123456789,.+-eE") == text.npos;
   return fmt::format("'{}' is not a number: write it like -1.5e-3{}, or remove the row", shown,
-                     has_groups ? ", without marks that separate thousands; where commas are "
-                                  "decimal marks, separate the columns by ';' or tabs"
-                                : "");
+                     text.find(',') == text.npos
+                         ? ""
+                         : ", without marks that separate thousands; where commas are "
+                           "decimal marks, separate the columns by ';' or tabs");
 }
 
 }  // namespace mindahl::io

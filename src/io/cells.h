@@ -13,11 +13,8 @@ inline constexpr double kDay = 86'400.0;  // [s]
 
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
-/// Takes the first row off a text, without its end: a line, and those below it while a quotation
-/// mark is open.
-/// @param lines       increased by the number of lines taken
-/// @param has_quotes  false where the text has no quotation mark
-std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes = true);
+/// Takes the first line off a text, without its end.
+std::string_view TakeLine(std::string_view& text);
 
 /// True for a line that holds no row: blank, or a comment that begins with '#', where that is no
 /// error value of a spreadsheet ("#N/A").

@@ -139,9 +139,6 @@ class Reading {
     layout_.header.file = file;
     data_ = FirstDataRow();
     PassResults();
-    for (const Row& row : std::span(rows_).subspan(data_)) {
-      if (row.HasData()) most_cells_ = std::max(most_cells_, row.columns);
-    }
     layout_.data_offset = rows_[data_].offset;
     layout_.data_line = rows_[data_].line;
     FindNames();
@@ -189,9 +186,9 @@ class Reading {
         "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected "
         "columns "
         "of numbers under an optional header, between tabs, ';', blanks, or commas where these are "
-        "no decimal marks{}",
+        "no decimal marks",
         file, row.line, cell + 1, ForMessage(row.cells[static_cast<std::size_t>(cell)]),
-        rows_.size(), row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p" : "");
+        rows_.size());
   }
 
  private:
@@ -209,11 +206,7 @@ class Reading {
         std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
     std::optional<std::size_t> any;
     for (auto row = names == rows_.end() ? rows_.begin() : names; row != rows_.end(); ++row) {
-      // One that has more than most, as an event of a logger, stands below a header that names
-      // them.
-      const bool is_named = row != rows_.begin() && row->cells.size() > columns_ &&
-                            (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
-      if (!IsData(*row) && !(row->HasData() && is_named)) continue;
+      if (!IsData(*row)) continue;
       const auto place = static_cast<std::size_t>(row - rows_.begin());
       if (!has_text_among_numbers(*row)) return place;
       if (!any) any = place;
@@ -249,7 +242,7 @@ class Reading {
     if (!row.IsText() && !(by_blanks && is_sentence)) return std::nullopt;
     // Rows may lack the last column, as that of comments or events.
     const std::size_t columns = std::max(row.filled, rows_[data_].filled);
-    const std::size_t most = most_cells_ + (by_blanks ? 0 : 1);
+    const std::size_t most = columns_ + (by_blanks ? 0 : 1);
     if (row.IsText() && columns <= row.cells.size() && columns <= most) {
       return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
     }
@@ -305,11 +298,12 @@ class Reading {
     }
     if (data_ == 0) return;
     const std::string& file = layout_.header.file;
+    for (const Row& row : std::span(rows_).first(data_)) {
+      if (!row.cells.back().starts_with('"')) continue;
+      Refuse("{}:{}: a quotation mark opened here is never closed in its line", file, row.line);
+    }
     if (header == data_) {
       const Row& row = rows_[data_ - 1];
-      if (row.cells.back().starts_with('"')) {
-        Refuse("{}:{}: a quotation mark opened here is never closed", file, row.line);
-      }
       Refuse(
           "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
           "every column, or begin the line with '#' if it is a comment{}",
@@ -341,31 +335,20 @@ class Reading {
   Layout layout_;
   Strings names_, units_;  // one a column, or none
   std::vector<Row> rows_;
-  std::size_t columns_ = 0;     ///< number in most rows with data
-  long score_ = 0;              ///< numbers less broken numbers in the rows with so many columns
-  std::size_t most_cells_ = 0;  // of a row from the data on
-  std::size_t data_ = 0;        // index of the first data row
+  std::size_t columns_ = 0;  ///< number in most rows with data
+  long score_ = 0;           ///< numbers less broken numbers in the rows with so many columns
+  std::size_t data_ = 0;     // index of the first data row
 };
-
-/// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.
-char StatedDelimiter(std::string_view row) {
-  if (row.starts_with('"') && row.ends_with('"')) row = row.substr(1, row.size() - 2);
-  const bool states = row.size() == 5 && LowerCase(row.substr(0, 4)) == "sep=";
-  return states ? row.back() : '\0';
-}
 
 }  // namespace
 
 Layout FindLayout(std::string_view text, const std::string& file) {
   std::vector<Row> sampled;
   std::optional<Row> comment;  // the last above all rows, where a header may stand
-  char stated = '\0';
   std::size_t line = 0;
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
-    Row row{.text = {}, .line = line + 1, .offset = text.size() - rest.size()};
-    row.text = TakeRow(rest, line);
-    if (row.line == 1) stated = StatedDelimiter(row.text);
-    if (row.line == 1 && stated != '\0') continue;
+    Row row{.text = {}, .line = ++line, .offset = text.size() - rest.size()};
+    row.text = TakeLine(rest);
     if (!IsBlankOrComment(row.text)) {
       sampled.push_back(std::move(row));
     } else if (sampled.empty() && !Trimmed(row.text).empty()) {
@@ -375,7 +358,6 @@ Layout FindLayout(std::string_view text, const std::string& file) {
   std::optional<Reading> best;
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
-    if (stated != '\0' && delimiter != stated) continue;
     Reading reading(sampled, delimiter);
     if (!best || reading.rank() > best->rank()) best = std::move(reading);
   }

@@ -54,35 +54,17 @@ bool IsIn(std::string text, const std::string& encoding) {
 }
 
 /// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
-/// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
-/// UTF-8, Shift-JIS by two bytes or more from 0x81 to 0x9F, GB18030 by two characters of GB2312 in
-/// a row, Windows-1251 by a word of Cyrillic letters; the rest is Windows-1252, of which Latin-1 is
-/// a part.
+/// UTF-16 is known by its byte order mark; of what is not UTF-8, Shift-JIS by two bytes or more
+/// from 0x81 to 0x9F; the rest is Windows-1252, of which Latin-1 is a part.
 std::string EncodingOf(std::string_view head) {
   if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
   if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
-  std::array<std::ptrdiff_t, 2> zeroes{};  // in even and odd places
-  for (std::size_t at = 0; at < head.size(); ++at) zeroes[at % 2] += head[at] == '\0' ? 1 : 0;
-  if (const auto [even, odd] = zeroes; even + odd > 0) {
-    if (even == 0 && 4 * odd >= std::ssize(head)) return "UTF-16LE";
-    return odd == 0 && 4 * even >= std::ssize(head) ? "UTF-16BE" : "";
-  }
   const std::string text(head);
   if (IsIn(text, "UTF-8")) return "";
-  // European letters may look like a few characters of these by chance.
+  // European letters may look like a few characters of it by chance.
   const auto is_kanji = [](char of) { return ByteOf(of) >= 0x81 && ByteOf(of) <= 0x9F; };
-  if (std::ranges::count_if(head, is_kanji) >= 2 && IsIn(text, "CP932")) return "CP932";
-  // Small Cyrillic letters follow each other; European ones with accents do not, and Chinese
-  // characters have as many other bytes.
-  const auto is_small = [](char of) { return ByteOf(of) >= 0xE0; };
-  const auto is_other = [](char of) { return ByteOf(of) >= 0x80 && ByteOf(of) < 0xE0; };
-  const bool has_word = std::ranges::search_n(head, 3, true, {}, is_small).size() > 0;
-  if (has_word && std::ranges::count_if(head, is_small) > std::ranges::count_if(head, is_other)) {
-    return "WINDOWS-1251";
-  }
-  const auto is_of_pair = [](char of, bool) { return ByteOf(of) >= 0xA1; };
-  const bool has_two = std::search_n(head.begin(), head.end(), 4, true, is_of_pair) != head.end();
-  return has_two && IsIn(text, "GB2312") ? "GB18030" : "WINDOWS-1252";
+  const bool is_japanese = std::ranges::count_if(head, is_kanji) >= 2 && IsIn(text, "CP932");
+  return is_japanese ? "CP932" : "WINDOWS-1252";
 }
 
 [[noreturn]] void ThrowCannotRead(const std::string& name, const char* reason) {
@@ -160,7 +142,7 @@ void LinePieces::Read() {
   }
   if (const std::size_t zero = text_.find('\0', before); zero != std::string::npos) {
     const auto line = 1 + std::count(text_.data(), text_.data() + zero, '\n');
-    Refuse("{}{}: is not text, it holds a zero byte: export it as CSV", name_,
+    Refuse("{}{}: is not text, it holds a zero byte: export it as CSV, or give --encoding", name_,
            is_first ? fmt::format(":{}", line) : "");
   }
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
@@ -186,11 +168,8 @@ void LinePieces::FindEncoding(std::string_view head) {
         encoding_, name_, std::strerror(errno));
   }
   if (is_found && !encoding_.starts_with("UTF-16")) {
-    note_ =
-        fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding", name_,
-                    encoding_ == "CP932"          ? "Shift-JIS"
-                    : encoding_ == "WINDOWS-1252" ? "Latin-1 (Windows-1252)"
-                                                  : encoding_);
+    note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding",
+                        name_, encoding_ == "CP932" ? "Shift-JIS" : "Latin-1 (Windows-1252)");
   }
 }
 

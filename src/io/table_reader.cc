@@ -19,7 +19,6 @@ TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& w
       table_(layout.header),
       is_wanted_(wanted.empty() ? layout.holds_numbers : std::vector<bool>(layout.columns())),
       values_(layout.columns()),
-      last_clock_(layout.columns()),
       faults_(layout.columns()),
       line_(layout.data_line - 1) {
   for (const std::size_t column : wanted) is_wanted_[column] = true;
@@ -40,10 +39,9 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
 }
 
 void TableReader::Read(std::string_view text) {
-  const bool has_quotes = text.find('"') != std::string_view::npos;
   while (!text.empty()) {
-    row_line_ = line_ + 1;
-    const std::string_view row = TakeRow(text, line_, has_quotes);
+    row_line_ = ++line_;
+    const std::string_view row = TakeLine(text);
     const bool may_be_none = row.empty() || row.front() <= '#';  // a blank is below '#'
     if (!may_be_none || !IsBlankOrComment(row)) ReadRow(row);
   }
@@ -87,8 +85,8 @@ void TableReader::ReadRow(std::string_view row) {
                                : ""));
   }
   if (cells.is_open()) {
-    fault =
-        fmt::format("{}:{}: a quotation mark opened here is never closed", table_.file, row_line_);
+    fault = fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
+                        table_.file, row_line_);
   } else if (!has_content && fault.empty()) {
     return;
   }
@@ -129,10 +127,6 @@ void TableReader::ReadCell(std::size_t column, std::string_view text) {
   const TableColumn& of = table_.columns[column];
   values_[column] = cell.value;
   if (cell.kind == Cell::Kind::kClock) {
-    // A time of day without a date that is 12 h or more before the last is of the next day.
-    double& last = last_clock_[column];
-    while (values_[column] < kDay && values_[column] + kDay / 2 < last) values_[column] += kDay;
-    last = values_[column];
     table_.columns[column].is_clock = true;
   } else if (cell.kind != Cell::Kind::kNumber) {
     const bool is_missing = cell.kind == Cell::Kind::kMissing;

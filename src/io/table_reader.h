@@ -68,9 +68,9 @@ class TableReader {
 
   Layout layout_;
   CsvTable table_;
-  std::vector<bool> is_wanted_;              // of each column
-  std::vector<double> values_, last_clock_;  // of each column, in the row and in those above
-  std::vector<std::string> faults_;          // of each column whose value is not finite
+  std::vector<bool> is_wanted_;      // of each column
+  std::vector<double> values_;       // of each column, in the row
+  std::vector<std::string> faults_;  // of each column whose value is not finite
   std::size_t line_;
   std::size_t row_line_ = 0;
   char mark_ = '\0';  // the decimal mark, once one was seen

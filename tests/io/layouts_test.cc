@@ -291,8 +291,6 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
               HasSubstr("'X' (column 1) only grows while 'RF:RF1' (column 3) goes to and fro"));
   EXPECT_THAT(Refusal("t,ay [g],az [g]\n" + wave),
               HasSubstr("no column for the displacement: the columns are"));
-  EXPECT_THAT(Refusal("stamp:\n  secs: 1\nposition: [1.5]\n---\nposition: [2]\n"),
-              HasSubstr("write it by rostopic echo -p"));
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 

@@ -54,10 +54,10 @@ struct CsvTable {
 
 /// Reads a delimited text as a table, from a file that is plain or compressed by gzip.
 ///
-/// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one that a first line "sep=;" states,
-/// else under which the first 1000 rows hold the most numbers less broken numbers ("5;2", "12:30"),
-/// in that order on a tie. The decimal mark is a point, or a comma that is not the delimiter; both
-/// in one file is an error. Cells may be quoted (RFC 4180), a trailing delimiter is no cell.
+/// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one under which the first 1000 rows
+/// hold the most numbers less broken numbers ("5;2", "12:30"), in that order on a tie. The decimal
+/// mark is a point, or a comma that is not the delimiter; both in one file is an error. Cells may
+/// be quoted (RFC 4180) within a line, a trailing delimiter is no cell.
 ///
 /// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
 /// meant to be numbers, one of them a number: "sample_rate,200" has none. The number of columns is
@@ -74,8 +74,8 @@ struct CsvTable {
 ///
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
 /// @param path         kStandardInput reads that, called "standard input" in messages
-/// @param encoding     as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS, GB18030 or
-///   Windows-1252 by the first bytes, with a note of the latter three
+/// @param encoding     as iconv calls it; "" for UTF-8, UTF-16 with its mark, or, with a note,
+///   Shift-JIS or Windows-1252 by the first bytes
 /// @throws InputError also when the file cannot be read: one whose fit needs more memory than the
 ///   process may have, or that holds a zero byte or a line of more than 16 MiB, is read no further
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {});

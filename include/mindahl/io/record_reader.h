@@ -109,8 +109,7 @@ struct Samples : loop::Record {
 ///
 /// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
 /// the header, in the first mebibyte, and the first 128 kibibytes of rows; every row is then read
-/// by the same rules, but that a quoted cell ends with its line. Lines end in LF or CRLF.
-/// Covariates are not read.
+/// by the same rules. Covariates are not read.
 class RecordStream {
  public:
   /// @throws InputError as ReadRecord() does of a file that ends with these rows
