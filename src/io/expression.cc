@@ -12,7 +12,7 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::string_view kOperators = "+-*/";
+constexpr std::string_view kOperators = "+-*";
 
 /// Returns the column of a number from 1.
 /// @param where  it stands, for the refusal of one that there is not
@@ -29,42 +29,41 @@ class ExpressionReader {
       : rest_(text), names_(names), role_(role), where_(std::move(where)) {}
 
   Quantity Read() {
-    Quantity expression{.role = role_};
+    Quantity sum{.role = role_};
     do {
       double factor = 1.0;
       for (; rest_.starts_with('-') || rest_.starts_with('+'); Take(1)) {
         if (rest_.front() == '-') factor = -factor;
       }
       std::optional<std::size_t> column;
-      for (bool divides = false;; Take(1)) {
+      for (;; Take(1)) {
         if (const auto found = TakeColumn()) {
-          if (column || divides) Throw("multiplies columns: it must be a sum of them");
+          if (column) ThrowNoSum();
           column = found;
         } else {
-          const double number = TakeNumber();
-          factor = divides ? factor / number : factor * number;
-          expression.is_scaled = true;
+          factor *= TakeNumber();
+          sum.is_scaled = true;
         }
-        if (!rest_.starts_with('*') && !rest_.starts_with('/')) break;
-        divides = rest_.front() == '/';
+        if (!rest_.starts_with('*')) break;
       }
-      if (!std::isfinite(factor) || (column && factor == 0)) {
-        Throw("has a factor that is 0 or infinite");
-      }
+      if (!std::isfinite(factor) || (column && factor == 0)) ThrowNoSum();
       if (column) {
-        expression.terms.push_back({*column, factor});
+        sum.terms.push_back({*column, factor});
       } else {
-        expression.offset += factor;
+        sum.offset += factor;
       }
     } while (!rest_.empty());
-    if (expression.terms.empty()) {
-      Throw("names no column: write it like raw*0.0123-4.5 [N], or #3 for the third column");
-    }
-    return expression;
+    if (sum.terms.empty()) ThrowNoSum();
+    return sum;
   }
 
  private:
-  [[noreturn]] void Throw(std::string_view rule) const { Refuse("{}: {}", where_, rule); }
+  [[noreturn]] void ThrowNoSum() const {
+    Refuse(
+        "{}: must be a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], "
+        "with #3 for the third column",
+        where_);
+  }
   void Take(std::size_t size) { rest_ = Trimmed(rest_.substr(size)); }
 
   /// Takes the longest name before an operator or the end, or # and a number.
@@ -92,14 +91,14 @@ class ExpressionReader {
     const bool ends = after.empty() || kOperators.find(after.front()) != std::string_view::npos;
     if (error != std::errc() || size == 0 || !std::isfinite(value) || !ends) {
       const std::string_view name = Trimmed(rest_.substr(0, rest_.find_first_of(kOperators)));
-      if (name.empty()) Throw("is incomplete: write it like raw*0.0123-4.5 [N]");
+      if (name.empty()) ThrowNoSum();
       std::vector<std::string> known;
       known.reserve(names_.size());
       for (std::size_t column = 0; column < names_.size(); ++column) {
         known.push_back(ForMessage(names_[column].name));
       }
-      Throw(fmt::format("no column is called '{}' (for the {}){} {}", name, RulesOf(role_).name,
-                        DidYouMean(name, known), names_.Listing()));
+      Refuse("{}: no column is called '{}' (for the {}){} {}", where_, name, RulesOf(role_).name,
+             DidYouMean(name, known), names_.Listing());
     }
     Take(size);
     return value;

@@ -240,21 +240,6 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
 }
 
-/// Leaves out a load about zero, as of a cell that was tared under it.
-void LeaveOutTaredLoad(const std::string& name, RecordFile& file) {
-  std::vector<double>& load = file.record.normal_load;
-  if (load.empty()) return;
-  const double mean = std::reduce(load.begin(), load.end()) / static_cast<double>(load.size());
-  const auto [least, greatest] = std::ranges::minmax(load);
-  if (std::abs(mean) > (greatest - least) / 8) return;
-  file.notes.push_back(
-      fmt::format("{}: normal load '{}' (column {}) is about zero, as of a tared "
-                  "load cell: left out",
-                  name, file.normal_load.name, file.normal_load.index));
-  load.clear();
-  file.normal_load = {};
-}
-
 /// Returns the time of a table, by which another is joined to it, where it has one.
 std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
@@ -274,49 +259,33 @@ std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) 
 void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& given_time) {
   const auto time_of_table = TimeOf(table, given_time);
   const auto time_of_other = TimeOf(other, "");
-  std::vector<double> times;  // not finite in a row at fault
-  std::vector<double> of_other;
-  if (time_of_table && time_of_other) of_other = time_of_other->Numbers(other);
-  const bool by_time = !of_other.empty() && std::ranges::is_sorted(of_other);
-  for (std::size_t row = 0; by_time && row < table.rows(); ++row) {
-    times.push_back(time_of_table->unit.ToSi(time_of_table->ValueIn(table, row)));
-  }
+  std::vector<double> times;
+  if (time_of_table && time_of_other) times = time_of_other->Numbers(other);
+  const bool by_time = !times.empty() && std::ranges::is_sorted(times);
   if (!by_time && table.rows() != other.rows()) {
     Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
            table.file, table.rows(), other.file, other.rows());
-  }
-  const auto is_covered = [&](double time) {
-    return of_other.front() <= time && time <= of_other.back();
-  };
-  // Columns with fewer numbers are none of numbers.
-  if (by_time && 2 * std::ranges::count_if(times, is_covered) < std::ssize(times)) {
-    Refuse(
-        "--with: the times of {} run from {} to {} s and those of {} from {} to {} s: less than "
-        "half of the rows have a time in both: give files of one clock, or cut the first to the "
-        "times of the other",
-        table.file, times.front(), times.back(), other.file, of_other.front(), of_other.back());
   }
   for (const TableColumn& column : other.columns) {
     TableColumn& added = table.columns.emplace_back(column);
     if (!by_time || added.values.empty()) continue;
     added.values.clear();
-    for (const double time : times) {
-      const auto k =
-          static_cast<std::size_t>(std::ranges::lower_bound(of_other, time) - of_other.begin());
-      if (!is_covered(time)) {
-        // Times of the first file that the other does not cover are no fault.
-        if (added.missing.empty()) {
-          added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
-                                      table.lines[added.values.size()], other.file);
-        }
-        added.values.push_back(std::numeric_limits<double>::quiet_NaN());
-        continue;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const double time = time_of_table->unit.ToSi(time_of_table->ValueIn(table, row));
+      const auto next = std::ranges::lower_bound(times, time);
+      const auto k = static_cast<std::size_t>(next - times.begin());
+      double& value = added.values.emplace_back();
+      if (next != times.end() && *next == time) {
+        value = column.values[k];
+      } else if (k > 0 && next != times.end()) {
+        value = std::lerp(column.values[k - 1], column.values[k],
+                          (time - times[k - 1]) / (times[k] - times[k - 1]));
+      } else {
+        value = std::numeric_limits<double>::quiet_NaN();
+        if (!added.missing.empty()) continue;
+        added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
+                                    table.lines[row], other.file);
       }
-      const double step = k == 0 ? 0.0 : of_other[k] - of_other[k - 1];
-      const double weight = step > 0 ? (of_other[k] - time) / step : 0.0;
-      added.values.push_back(weight > 0
-                                 ? weight * column.values[k - 1] + (1 - weight) * column.values[k]
-                                 : column.values[k]);
     }
   }
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
@@ -338,7 +307,6 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
-  if (columns.normal_load.empty()) LeaveOutTaredLoad(table.file, file);
   AddCovariates(names, columns.covariates, file);
   return std::move(file);
 }
