@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <ranges>
-#include <set>
 #include <utility>
 
 #include "core/text.h"
@@ -60,16 +59,13 @@ ColumnNames::Column ObservedIn(const std::vector<double>& values) {
   return column;
 }
 
-/// True for whole numbers that stay or grow by one from row to row.
-bool IsCounter(const std::vector<double>& values) {
-  const auto breaks = [](double one, double next) { return next != one && next != one + 1; };
-  return std::ranges::adjacent_find(values, breaks) == values.end() &&
-         std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
-}
+/// Evidence of a unit, which counts more than a word; and of numbers that go to and fro, more
+/// still.
+constexpr int kUnit = 100;
+constexpr int kMoving = 1000;
 
-/// Returns the evidence that a column has a role: 0 is none. A unit counts more than a word.
+/// Returns the evidence that a column has a role: 0 is none.
 int EvidenceFor(const ColumnNames::Column& column, Role role) {
-  constexpr int kUnit = 100;
   constexpr int kWord = 50;
   constexpr int kStep = 5;       // of a rank
   constexpr int kLesser = 30;    // what is commanded or raw
@@ -77,6 +73,8 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
   const NameEvidence& evidence = column.evidence;
   const bool has_word = !evidence.word.empty();
   const bool is_named = evidence.names(role);
+  // "N" counts cycles or rows where it only grows.
+  if (evidence.word == "N" && column.unit.empty() && column.trend > 0) return 0;
   // A force in newton, unless there is a better one.
   if (role == Role::kForce && evidence.word == "f n") return 1;
   // A normal load is one by its name alone.
@@ -129,7 +127,7 @@ class RoleAssigner {
     FindPair();
     if (!asked.sample_rate && IsMissing(Role::kTime)) {
       TakeFound(Role::kTime, taken_);
-      AddNanoseconds();
+      if (!IsMissing(Role::kTime)) AddNanoseconds();
     }
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     std::vector<bool> taken = taken_;
@@ -161,10 +159,6 @@ class RoleAssigner {
   void Take(std::size_t column, Role role) {
     taken_[column] = true;
     Of(role).terms = {{column, 1.0}};
-  }
-
-  std::optional<bool> IsAngular(std::size_t column, Role role) {
-    return names_[column].IsAngular(Of(role).given_unit);
   }
 
   void TakeGiven(const std::string& text, Role role) {
@@ -200,7 +194,6 @@ class RoleAssigner {
 
   /// Adds to a stamp of whole seconds, "header.stamp.sec", the column of its nanoseconds.
   void AddNanoseconds() {
-    if (IsMissing(Role::kTime)) return;
     const std::string stamp = LowerCase(names_[ColumnOf(Role::kTime)].name);
     const std::size_t at = stamp.rfind("sec");
     for (const std::string_view prefix : {"nano", "n"}) {
@@ -210,95 +203,94 @@ class RoleAssigner {
     }
   }
 
-  /// Returns the columns that may have a role: the one that is given, else those with evidence; of
-  /// these, those that go to and fro, if any does. There is always one, perhaps none.
-  std::vector<std::optional<std::size_t>> CandidatesFor(Role role) {
-    if (!IsMissing(role)) return {ColumnOf(role)};
-    std::vector<std::size_t> columns;
-    int most_moving = 0;
-    int most_resting = 0;
+  /// The columns of the most evidence for a role.
+  struct Pick {
+    int score = 0;
+    std::vector<std::size_t> columns = {};
+  };
+
+  /// Returns what a force by a length, or a torque by an angle, may have as a role: the column that
+  /// is given, or those of the most evidence, one that goes to and fro before all others.
+  Pick PickFor(Role role, bool is_angular) {
+    Pick pick;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
-      const int evidence = EvidenceFor(names_[column], role);
-      if (taken_[column] || !names_[column].is_numeric || evidence <= 0) continue;
-      columns.push_back(column);
-      int& most = names_[column].goes_to_and_fro ? most_moving : most_resting;
-      most = std::max(most, evidence);
+      const ColumnNames::Column& of = names_[column];
+      const bool is_free = IsMissing(role) && !taken_[column] && of.is_numeric;
+      const bool is_given = !IsMissing(role) && column == ColumnOf(role);
+      const int evidence = EvidenceFor(of, role);
+      if (!is_given && !(is_free && evidence > 0)) continue;
+      if (of.IsAngular(Of(role).given_unit).value_or(is_angular) != is_angular) continue;
+      const int score = evidence + (of.goes_to_and_fro ? kMoving : 0);
+      if (score > pick.score) pick = {score, {}};
+      if (score == pick.score) pick.columns.push_back(column);
     }
-    if (columns.empty()) return {std::nullopt};
-    if (most_moving > 0 && most_resting >= most_moving) {
-      notes_.push_back(fmt::format("{}: {}: one that goes to and fro is taken", file_,
-                                   names_.MayEachBe(role, columns)));
-    }
-    if (most_moving > 0) {
-      std::erase_if(columns, [&](std::size_t column) { return !names_[column].goes_to_and_fro; });
-    }
-    return {columns.begin(), columns.end()};
+    return pick;
   }
 
   /// Takes the displacement and the force of the most evidence that go together.
   void FindPair() {
-    constexpr int kMismatch = 40;
     constexpr int kComplete = 60;  // of two columns by their words
     constexpr std::array kPair = {Role::kDisplacement, Role::kForce};
-    const bool is_free = IsMissing(kPair[0]) && IsMissing(kPair[1]);
-    const auto displacements = CandidatesFor(kPair[0]);
-    if (!displacements.front() && LeftColumns().empty()) ThrowNoColumn(kPair[0]);
-    int most = -kMismatch;
-    std::array<std::set<std::size_t>, 2> best;
-    // The displacements of a force by a length, and of a torque by an angle.
-    std::array<std::optional<std::size_t>, 2> of_kind;
-    for (const std::optional<std::size_t> force : CandidatesFor(kPair[1])) {
-      for (const std::optional<std::size_t> displacement : displacements) {
-        if (displacement && displacement == force) continue;
-        const auto turns = displacement ? IsAngular(*displacement, kPair[0]) : std::nullopt;
-        const auto twists = force ? IsAngular(*force, kPair[1]) : std::nullopt;
-        int evidence = turns && twists && turns != twists ? -kMismatch : 0;
-        if (displacement) evidence += EvidenceFor(names_[*displacement], kPair[0]);
-        if (force) evidence += EvidenceFor(names_[*force], kPair[1]);
-        const bool kind = turns.value_or(false);
-        if (displacement && force && kind == twists.value_or(false) && evidence > kComplete) {
-          of_kind[kind ? 1 : 0] = displacement;
-        }
-        if (evidence < most) continue;
-        if (evidence > std::exchange(most, evidence)) best = {};
-        if (displacement) best[0].insert(*displacement);
-        if (force) best[1].insert(*force);
+    std::array<std::array<Pick, 2>, 2> picks;  // of a force by a length, of a torque by an angle
+    std::array<int, 2> scores = {};
+    for (const std::size_t kind : {0U, 1U}) {
+      for (const std::size_t k : {0U, 1U}) {
+        picks[kind][k] = PickFor(kPair[k], kind == 1);
+        scores[kind] += picks[kind][k].score;
       }
     }
-    if (is_free && of_kind[0] && of_kind[1]) {
-      names_.ThrowAmbiguous(kPair[0], {*of_kind[0], *of_kind[1]});
+    const std::size_t kind = scores[1] > scores[0] ? 1 : 0;
+    const auto& [line, push] = picks[0];
+    const auto& [turn, twist] = picks[1];
+    const bool has_both = line.score > 0 && push.score > 0 && turn.score > 0 && twist.score > 0 &&
+                          line.columns != turn.columns && push.columns != twist.columns;
+    if (has_both && std::min(scores[0], scores[1]) > kComplete &&
+        std::abs(scores[0] - scores[1]) < kMoving) {
+      names_.ThrowAmbiguous(kPair[0], {line.columns.front(), turn.columns.front()});
     }
-    // The only column with evidence has it of both.
-    if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
     for (const std::size_t k : {0U, 1U}) {
-      if (!IsMissing(kPair[k]) || best[k].empty()) continue;
-      if (best[k].size() > 1) names_.ThrowAmbiguous(kPair[k], {best[k].begin(), best[k].end()});
-      Take(*best[k].begin(), kPair[k]);
+      // A displacement that has no force to go with it is refused with the one that there is.
+      const std::vector<std::size_t>& of_kind = picks[kind][k].columns;
+      std::vector<std::size_t> columns = of_kind.empty() ? picks[1 - kind][k].columns : of_kind;
+      std::erase_if(columns, [&](std::size_t column) { return taken_[column]; });
+      if (!IsMissing(kPair[k]) || columns.empty()) continue;
+      if (columns.size() > 1) names_.ThrowAmbiguous(kPair[k], columns);
+      NoteThatItMoves(columns.front(), kPair[k]);
+      Take(columns.front(), kPair[k]);
     }
   }
 
-  /// Returns the columns of numbers of which neither name nor unit says anything.
-  std::vector<std::size_t> LeftColumns() const {
+  /// Says so where a column that has as much evidence of a role is not taken, as it rests.
+  void NoteThatItMoves(std::size_t taken, Role role) {
+    const int evidence = EvidenceFor(names_[taken], role);
+    for (std::size_t column = 0; column < taken_.size() && names_[taken].goes_to_and_fro;
+         ++column) {
+      const ColumnNames::Column& of = names_[column];
+      if (taken_[column] || !of.is_numeric || of.goes_to_and_fro) continue;
+      if (EvidenceFor(of, role) < evidence) continue;
+      notes_.push_back(fmt::format("{}: the {} is {}, as {} does not go to and fro", file_,
+                                   RulesOf(role).name, names_.Label(taken), names_.Label(column)));
+      return;
+    }
+  }
+
+  /// Gives what no name or unit decides to the columns of numbers that are left, if they are as
+  /// many.
+  void TakeLeft() {
+    std::vector<Role> missing = {Role::kDisplacement, Role::kForce};
+    std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
     std::vector<std::size_t> left;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
       const bool is_unknown = of.unit.empty() && of.evidence.word.empty();
       if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
     }
-    return left;
-  }
-
-  /// Gives what no name or unit decides to the columns that are left, if they are as many.
-  void TakeLeft() {
-    std::vector<Role> missing = {Role::kDisplacement, Role::kForce};
-    std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
-    if (missing.empty()) return;
-    std::vector<std::size_t> left = LeftColumns();
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
         return names_[column].trend != 0 || !(names_[column].greatest > names_[column].least);
       });
     }
+    if (missing.empty()) return;
     if (left.size() != missing.size()) ThrowNoColumn(missing.front());
     for (std::size_t k = 0; k < left.size(); ++k) {
       Take(left[k], missing[k]);
@@ -366,7 +358,6 @@ class RoleAssigner {
   /// Refuses a column without a unit whose numbers are those of a clock or a counter, where those
   /// of the other role go to and fro.
   void RequireMoving(Role role, Role other) {
-    constexpr int kUnit = 100;
     const std::size_t column = ColumnOf(role);
     const ColumnNames::Column& of = names_[column];
     if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= kUnit || of.trend == 0 ||
@@ -383,8 +374,11 @@ class RoleAssigner {
 
   /// @returns true for a torque against an angle
   bool RequireOneKind() {
-    const auto turns = IsAngular(ColumnOf(Role::kDisplacement), Role::kDisplacement);
-    const auto twists = IsAngular(ColumnOf(Role::kForce), Role::kForce);
+    const auto kind_of = [&](Role role) {
+      return names_[ColumnOf(role)].IsAngular(Of(role).given_unit);
+    };
+    const auto turns = kind_of(Role::kDisplacement);
+    const auto twists = kind_of(Role::kForce);
     const bool is_torsional = turns == true || twists == true;
     if (!is_torsional || (turns != false && twists != false)) return is_torsional;
     Refuse(
@@ -444,25 +438,20 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
     }
     added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
-    // "N" counts cycles or rows.
-    const bool is_n = added.evidence.word == "N" && added.unit.empty() && added.trend > 0;
-    if (is_n && IsCounter(column.values)) added.evidence.role = Role::kOther;
   }
 }
 
 std::optional<std::size_t> ColumnNames::Named(std::string_view name, Role role) const {
   const std::string lower = LowerCase(name);
-  const auto matches = [&](std::size_t column, int strictness) {
+  const auto matches = [&](std::size_t column, bool exactly) {
     const std::string& full = table_.columns[column].name;
-    if (full.empty()) return false;
-    if (strictness == 0) return full == name;
-    return LowerCase(strictness == 1 ? full : columns_[column].name) == lower;
+    if (exactly) return full == name;
+    return LowerCase(full) == lower || LowerCase(columns_[column].name) == lower;
   };
-  for (int strictness = 0; strictness < 3; ++strictness) {
+  for (const bool exactly : {true, false}) {
     std::vector<std::size_t> found;
-    found.reserve(size());
-    for (std::size_t column = 0; column < size(); ++column) {
-      if (matches(column, strictness)) found.push_back(column);
+    for (std::size_t column = 0; column < size() && !name.empty(); ++column) {
+      if (matches(column, exactly)) found.push_back(column);
     }
     if (found.size() > 1) ThrowAmbiguous(role, found);
     if (found.size() == 1) return found.front();
@@ -512,21 +501,17 @@ std::string ColumnNames::Label(std::size_t column) const {
   return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
 }
 
-std::string ColumnNames::MayEachBe(Role role, const std::vector<std::size_t>& columns) const {
+void ColumnNames::ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const {
   std::vector<std::string> labels;
   labels.reserve(columns.size());
   for (const std::size_t column : columns) labels.push_back(Label(column));
-  return fmt::format("{} may each be the {}", fmt::join(labels, " and "), RulesOf(role).name);
-}
-
-void ColumnNames::ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const {
-  Refuse("{}: {}: choose one by its number, as {} {}", Header(), MayEachBe(role, columns),
-         RulesOf(role).option, columns.front() + 1);
+  Refuse("{}: {} may each be the {}: choose one by its number, as {} {}", Header(),
+         fmt::join(labels, " and "), RulesOf(role).name, RulesOf(role).option, columns.front() + 1);
 }
 
 std::string ColumnNames::Listing() const {
   if (std::ranges::all_of(table_.columns, [](auto& column) { return column.name.empty(); })) {
-    return fmt::format("the file names none of its {} columns: choose by number", size());
+    return fmt::format("the file names none of its {} columns", size());
   }
   std::vector<std::string> listed;
   listed.reserve(size());

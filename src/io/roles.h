@@ -120,8 +120,6 @@ class ColumnNames {
   [[nodiscard]] std::string Header() const;
   /// Refuses columns, "'x' (column 1) and 'd' (column 2) may each be the displacement: give …".
   [[noreturn]] void ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const;
-  /// "'x' (column 1) and 'd' (column 2) may each be the displacement".
-  [[nodiscard]] std::string MayEachBe(Role role, const std::vector<std::size_t>& columns) const;
 
  private:
   const CsvTable& table_;

@@ -283,7 +283,7 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
               HasSubstr("no column for the displacement: the columns are"));
   EXPECT_THAT(Refusal("X,XYData-1,RF:RF1\n" + wave),
               HasSubstr("'X' (column 1) only grows while 'RF:RF1' (column 3) goes to and fro"));
-  EXPECT_THAT(Refusal("t,ay [g],az [g]\n" + wave),
+  EXPECT_THAT(Refusal("t,ay [g],V [V]\n" + wave),
               HasSubstr("no column for the displacement: the columns are"));
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
