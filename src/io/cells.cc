@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string/replace.hpp>
+#include <charconv>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -27,57 +28,45 @@ bool IsMissingMark(std::string_view text) {
 }
 
 /// Takes three whole numbers with one of some signs between them off a text: "10:11:12".
-/// @returns none, and leaves the text, where it does not begin with them
-std::optional<std::array<int, 3>> TakeThree(std::string_view& text, std::string_view signs) {
-  std::array<int, 3> numbers{};
-  std::string_view rest = text;
+/// @returns false, and leaves the text, where it does not begin with them
+bool TakeThree(std::string_view& text, std::string_view signs, std::array<int, 3>& numbers) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
   for (int& number : numbers) {
-    if (&number != numbers.data()) {
-      if (rest.empty() || signs.find(rest.front()) == rest.npos) return std::nullopt;
-      signs = rest.substr(0, 1);  // the second is the first again
-      rest.remove_prefix(1);
-    }
-    const std::size_t size = std::min(rest.find_first_not_of("0123456789"), rest.size());
-    const std::optional<int> read = NumberIn<int>(rest.substr(0, size));
-    if (!read) return std::nullopt;
-    number = *read;
-    rest.remove_prefix(size);
+    if (&number != numbers.data() && (at == end || signs.find(*at++) == signs.npos)) return false;
+    const auto [stop, error] = std::from_chars(at, end, number);
+    if (error != std::errc() || number < 0) return false;
+    at = stop;
   }
-  text = rest;
-  return numbers;
+  text.remove_prefix(static_cast<std::size_t>(at - text.data()));
+  return true;
 }
-
-constexpr std::string_view kSignsOfDates = "-./";
 
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
   double midnight = 0.0;
-  if (const auto parts = TakeThree(text, kSignsOfDates)) {
-    if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
-    text = Trimmed(text.substr(1));
-    const auto& [year, month, day] = *parts;
-    const std::chrono::year_month_day date{std::chrono::year(year),
-                                           std::chrono::month(static_cast<unsigned>(month)),
-                                           std::chrono::day(static_cast<unsigned>(day))};
-    if (year >= 1970 && date.ok()) {
+  std::array<int, 3> parts{};
+  if (TakeThree(text, "-./", parts)) {
+    const std::chrono::year_month_day date{std::chrono::year(parts[0]),
+                                           std::chrono::month(static_cast<unsigned>(parts[1])),
+                                           std::chrono::day(static_cast<unsigned>(parts[2]))};
+    if (parts[0] >= 1970 && date.ok()) {
       midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
     }
+    if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
+    text = Trimmed(text.substr(1));
   }
-  const auto clock = TakeThree(text, ":");
-  if (!clock) return std::nullopt;
-  const auto& [hour, minute, second] = *clock;
+  if (!TakeThree(text, ":", parts)) return std::nullopt;
+  const auto& [hour, minute, second] = parts;
   if (hour > 23 || minute > 59 || second > 60) return std::nullopt;  // 60: a leap second
-  double seconds = 3600.0 * hour + 60.0 * minute + second;
-  if (!text.empty() && std::string_view(".,:").find(text.front()) != std::string_view::npos) {
-    const std::string digits(text.substr(1, text.find_first_not_of("0123456789", 1) - 1));
-    if (digits.empty()) return std::nullopt;
-    seconds += *NumberIn<double>("0." + digits);
-    text.remove_prefix(1 + digits.size());
-  }
-  // A zone is the same in all rows.
-  const bool has_zone = text.starts_with('Z') || text.starts_with('+') || text.starts_with('-');
-  return text.empty() || has_zone ? std::optional(midnight + seconds) : std::nullopt;
+  const double seconds = midnight + 3600.0 * hour + 60.0 * minute + second;
+  // Behind it may be a fraction, and a zone, the same in all rows.
+  if (text.empty() || text.starts_with('Z') || text.starts_with('+')) return seconds;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
+  const auto fraction = NumberIn<double>("0." + std::string(text.substr(1, end - 1)));
+  const bool is_mark = text.front() == '.' || text.front() == ',';
+  return is_mark && end > 1 && fraction ? std::optional(seconds + *fraction) : std::nullopt;
 }
 
 }  // namespace
@@ -163,8 +152,8 @@ Cell ReadCell(std::string_view text, char delimiter) {
   if (const std::optional<double> seconds = ReadClock(text)) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
-  std::string_view rest = text;
-  const bool is_date = TakeThree(rest, kSignsOfDates) && rest.empty();
+  std::array<int, 3> date{};
+  const bool is_date = TakeThree(text, "-./", date) && text.empty();
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 

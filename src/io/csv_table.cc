@@ -38,23 +38,18 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   std::string_view text = pieces.Next();
   std::error_code is_no_file;
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
-  // Refuses a file whose fit would need more memory than the process may have, by as much of it as
-  // has been read. Measured for records of three columns: 1.14 kB a row of 59 bytes.
-  const auto require_memory = [&name, most = MemoryOfProcess()](std::uintmax_t rows,
-                                                                std::uintmax_t bytes) {
-    const std::uintmax_t memory = 1000 * rows + 3 * bytes;
-    if (memory <= most) return;
+  // Measured for fits of records of three columns: 1.14 kB a row of 59 bytes.
+  constexpr std::uintmax_t kMemory = 20;  // bytes a byte
+  if (!is_no_file && size > MemoryOfProcess() / kMemory) {
     Refuse(
         "{}: {} of it need about {} of memory, more than the {} that the process may have: fit a "
         "part of the file, every n-th row, or each cycle with mindahl track",
-        name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(most));
-  };
-  if (!is_no_file) require_memory(0, size);
+        name, BytesInWords(size), BytesInWords(kMemory * size), BytesInWords(MemoryOfProcess()));
+  }
   const Layout layout = FindLayout(text, name);
   TableReader reader(layout);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
-    require_memory(reader.table().rows(), pieces.bytes());
   }
   reader.Finish();
   CsvTable table = std::move(reader.table());
@@ -91,10 +86,6 @@ CsvTable TableOfColumns(std::vector<TableColumn> columns, std::string source) {
 }
 
 std::string CsvCell(const std::string& text) {
-  constexpr std::string_view kFormula = "=+-@";
-  if (text.size() > 1 && kFormula.find(text.front()) != std::string_view::npos) {
-    return CsvCell("./" + text);
-  }
   const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
                      !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
   if (plain) return text;

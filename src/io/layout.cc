@@ -138,7 +138,6 @@ class Reading {
   Layout Find(const std::string& file, const Row* comment) && {
     layout_.header.file = file;
     data_ = FirstDataRow();
-    PassResults();
     layout_.data_offset = rows_[data_].offset;
     layout_.data_line = rows_[data_].line;
     FindNames();
@@ -168,8 +167,7 @@ class Reading {
     return std::move(layout_);
   }
 
-  /// The whole file is at fault: its first row that cannot be a header, and the cell that should
-  /// have been a number, stand for it.
+  /// The first row that cannot be a header stands for the file.
   [[noreturn]] void ThrowNoNumbers(const std::string& file) const {
     const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
     if (data == rows_.end() && rows_.size() == 1) {
@@ -179,21 +177,14 @@ class Reading {
           file, rows_.front().line);
     }
     const Row& row = data == rows_.end() ? rows_.back() : *data;
-    const auto cell =
-        std::ranges::find_if(row.kinds, [](auto kind) { return kind != Cell::Kind::kNumber; }) -
-        row.kinds.begin();
     Refuse(
-        "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected "
-        "columns "
-        "of numbers under an optional header, between tabs, ';', blanks, or commas where these are "
-        "no decimal marks",
-        file, row.line, cell + 1, ForMessage(row.cells[static_cast<std::size_t>(cell)]),
-        rows_.size());
+        "{}:{}: none of the first {} rows has numbers, nor has '{}': expected columns of numbers "
+        "under an optional header, between tabs, ';', blanks, or commas where these are no decimal "
+        "marks",
+        file, row.line, rows_.size(), ForMessage(row.text));
   }
 
  private:
-  [[nodiscard]] bool IsData(const Row& row) const { return row.HasData() && row.CanHave(columns_); }
-
   std::size_t FirstDataRow() const {
     const auto has_text_among_numbers = [&](const Row& row) {
       for (std::size_t column = 0; column < row.kinds.size(); ++column) {
@@ -204,32 +195,11 @@ class Reading {
     // A header of LabVIEW has rows of numbers.
     const auto names =
         std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
-    std::optional<std::size_t> any;
     for (auto row = names == rows_.end() ? rows_.begin() : names; row != rows_.end(); ++row) {
-      if (!IsData(*row)) continue;
-      const auto place = static_cast<std::size_t>(row - rows_.begin());
-      if (!has_text_among_numbers(*row)) return place;
-      if (!any) any = place;
+      if (!row->HasData() || !row->CanHave(columns_)) continue;
+      if (!has_text_among_numbers(*row)) return static_cast<std::size_t>(row - rows_.begin());
     }
-    // Text in every row, each time in another column: the first row is as good as any.
-    return any.value_or(0);
-  }
-
-  /// Passes over a table of results above the data: a few rows of numbers below a header of their
-  /// own, before one that is another.
-  void PassResults() {
-    constexpr std::ptrdiff_t kOneIn = 10;
-    const auto is_data = [&](const Row& row) { return IsData(row); };
-    for (std::size_t k = data_ + 1; data_ > 0 && k < rows_.size(); ++k) {
-      const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
-      if (!header->IsText() || CountKnownWords(header->cells) < 2 ||
-          std::ranges::find(rows_.begin(), header, header->text, &Row::text) != header) {
-        continue;
-      }
-      const auto below = std::count_if(header, rows_.end(), is_data);
-      if (kOneIn * std::count_if(rows_.begin(), header, is_data) > below) return;
-      data_ = static_cast<std::size_t>(std::find_if(header, rows_.end(), is_data) - rows_.begin());
-    }
+    return 0;  // text in every row, each time in another column
   }
 
   /// Returns the cells of a row of text, one for each column of the data; nullopt when it is not

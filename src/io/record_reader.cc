@@ -18,27 +18,25 @@ namespace {
 
 bool IsNumber(double value) { return std::isfinite(value); }
 
-/// Refuses numbers of a register whose highest bit is a sign: none lies in the upper half of those
+/// Refuses numbers of a register whose bit 1024 is a sign: none lies in the upper half of those
 /// below it, and there are some on both sides.
 void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
+  constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
-  for (const double bit : {1024.0, 32768.0}) {
-    double below = -1.0;
-    double above = 0.0;
-    bool is_register = true;
-    for (const double value : names.table().columns[column].values) {
-      if (!IsNumber(value)) continue;
-      is_register = is_register && value >= 0 && value < 2 * bit && value == std::floor(value);
-      if (value < bit) below = std::max(below, value);
-      if (value >= bit) above = std::max(above, value);
-    }
-    if (!is_register || below < 0 || above < bit || below >= bit / 2) continue;
-    Refuse(
-        "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the "
-        "{}: write signed numbers, {} - value where the value is {} or more",
-        names.Header(), names.Label(column), below, bit - 1, bit, RulesOf(quantity.role).name, bit,
-        bit);
+  double below = -1.0;
+  double above = 0.0;
+  for (const double value : names.table().columns[column].values) {
+    if (!IsNumber(value)) continue;
+    if (value < 0 || value >= 2 * kBit || value != std::floor(value)) return;
+    double& greatest = value < kBit ? below : above;
+    greatest = std::max(greatest, value);
   }
+  if (below < 0 || above < kBit || below >= kBit / 2) return;
+  Refuse(
+      "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
+      "write signed numbers, {} - value where the value is {} or more",
+      names.Header(), names.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name, kBit,
+      kBit);
 }
 
 }  // namespace

@@ -43,8 +43,6 @@ class LinePieces {
   ///   or has a line of more than kLongestLine
   std::string_view Next();
 
-  /// Returns the number of bytes that were read.
-  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
   /// Returns what was assumed of the encoding, a sentence; "" where nothing was.
   [[nodiscard]] const std::string& note() const { return note_; }
 

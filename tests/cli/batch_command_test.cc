@@ -29,26 +29,6 @@ class BatchCommand : public CommandTest {
   }
 };
 
-// A spreadsheet takes for a formula what begins with one of these.
-TEST_F(BatchCommand, WritesNoNameOfAFileAsAFormula) {
-  const std::string record = Repeat(1);
-  const std::filesystem::path here = std::filesystem::current_path();
-  std::filesystem::current_path(directory_.path());
-  for (const char* name : {"=1+2.csv", "@x.csv"}) std::filesystem::copy_file(record, name);
-  const Outcome outcome = RunCommand(Batch("=1+2.csv @x.csv =none.csv"));
-  std::filesystem::current_path(here);
-  EXPECT_EQ(outcome.status, kNotEstablished) << "one is not there";
-  const Table table = testing::Rows(Content());
-  ASSERT_EQ(table.size(), 4U);
-  EXPECT_EQ(table[1][0], "./=1+2.csv");
-  EXPECT_EQ(table[2][0], "./@x.csv");
-  for (const std::vector<std::string>& row : table) {
-    for (const std::string& cell : row) {
-      EXPECT_TRUE(cell.empty() || std::string("=+@").find(cell[0]) == std::string::npos) << cell;
-    }
-  }
-}
-
 TEST_F(BatchCommand, WritesOverNothingUnasked) {
   Done(Batch({Repeat(1)}));
   const std::string before = Content();

@@ -94,9 +94,7 @@ struct CsvColumn {
 };
 
 /// Returns a text as one cell, quoted when it must be: RFC 4180 §2.6, and a '#' or a blank at an
-/// end, or nothing at all, which a reader would take for its own. Where a spreadsheet would take it
-/// for a formula, since it begins with =, +, - or @, it begins with ./ instead, so that the name of
-/// a file still is one.
+/// end, or nothing at all, which a reader would take for its own.
 std::string CsvCell(const std::string& text);
 
 /// Returns the columns as CSV text (RFC 4180, with LF at line ends): a header, then one row a
