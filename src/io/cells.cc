@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/algorithm/string/replace.hpp>
 #include <charconv>
 #include <chrono>
 #include <memory>
@@ -110,19 +109,12 @@ std::string_view CellCursor::Take() {
 }
 
 Cell ReadCell(std::string_view text, char delimiter) {
-  if (text.find("\u2212") != text.npos) {  // the sign of minus of word processors
-    return ReadCell(boost::replace_all_copy(std::string(text), "\u2212", "-"), delimiter);
-  }
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string_view digits = text;
   const bool negative = digits.front() == '-';
   if (negative || digits.front() == '+') digits.remove_prefix(1);
   const std::size_t first = digits.starts_with('.') ? 1 : 0;
-  if (digits.size() <= first || !IsDigit(digits[first])) {
-    const std::string lower = LowerCase(digits);
-    const bool is_infinite = lower == "inf" || lower == "infinity";
-    return {.kind = is_infinite ? Cell::Kind::kBroken : Cell::Kind::kText};
-  }
+  if (digits.size() <= first || !IsDigit(digits[first])) return {};
   char mark = digits.find('.') == std::string_view::npos ? '\0' : '.';
   std::string with_point;
   std::string_view plain = digits;
@@ -140,11 +132,9 @@ Cell ReadCell(std::string_view text, char delimiter) {
   // from_chars does not say on which side a number is out of range; only a negative exponent can
   // make one too small.
   const bool is_beyond = error == std::errc::result_out_of_range;
-  if (is_beyond) magnitude = 0.0;
-  if (stop == end && is_beyond && LowerCase(digits).find("e-") == std::string::npos) {
-    return {.kind = Cell::Kind::kTooLarge, .decimal_mark = mark};
-  }
-  if (stop == end) {
+  const bool is_small = is_beyond && LowerCase(digits).find("e-") != std::string::npos;
+  if (stop == end && (!is_beyond || is_small)) {
+    if (is_small) magnitude = 0.0;
     return {.kind = Cell::Kind::kNumber,
             .value = negative ? -magnitude : magnitude,
             .decimal_mark = mark};
@@ -159,9 +149,6 @@ Cell ReadCell(std::string_view text, char delimiter) {
 
 std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {
   const std::string shown = ForMessage(text);
-  if (kind == Cell::Kind::kTooLarge) {
-    return fmt::format("'{}' is too large: must be below 1.8e308", shown);
-  }
   if (kind == Cell::Kind::kMissing) {
     return fmt::format("'{}' is not a number: fill in the cell or remove the row", shown);
   }

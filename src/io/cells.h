@@ -93,10 +93,9 @@ class CellCursor {
 struct Cell {
   enum class Kind {
     kNumber,
-    kClock,     ///< a time of day, perhaps with a date: its value is in seconds
-    kMissing,   ///< empty, or a mark of a missing number: "NaN", "n/a", "#DIV/0!", "-"
-    kBroken,    ///< meant as a number and not one: "1.2.3", "5;2", "0x1F", "12:30"
-    kTooLarge,  ///< "1e999": no finite double
+    kClock,    ///< a time of day, perhaps with a date: its value is in seconds
+    kMissing,  ///< empty, or a mark of a missing number: "NaN", "n/a", "#DIV/0!", "-"
+    kBroken,   ///< meant as a number and not one: "1.2.3", "5;2", "0x1F", "1e999"
     kText,
   };
   Kind kind = Kind::kText;

@@ -32,19 +32,17 @@ void RequireDrawable(const PlotPanel& panel) {
   RequirePositive("height of a panel", panel.height);
   if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
   for (const PlotSeries& series : panel.series) {
-    const std::string name = fmt::format("'{}'", series.label);
-    if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-    const auto require = [&](const std::string& what, const Values& values, bool is_logarithmic) {
-      RequireSameSize("x of " + name, series.x.size(), what, values.size());
+    const auto require = [&](char axis, const Values& values, bool is_logarithmic) {
+      const std::string what = fmt::format("{} of '{}'", axis, series.label);
+      RequireSameSize("x of '" + series.label + "'", series.x.size(), what, values.size());
+      if (values.empty()) throw InvalidArgument(what + " has no points: must have one");
       for (const double value : values) {
         RequireFinite(what, value);
-        if (is_logarithmic && value <= 0) {
-          ThrowInvalid(what, value, "must be > 0 on a logarithmic axis");
-        }
+        if (is_logarithmic) RequirePositive(what, value);
       }
     };
-    for (const Values* y : HeightsOf(series)) require("y of " + name, *y, panel.log_y);
-    require("x of " + name, series.x, panel.log_x);
+    for (const Values* y : HeightsOf(series)) require('y', *y, panel.log_y);
+    require('x', series.x, panel.log_x);
   }
 }
 

@@ -66,21 +66,16 @@ class ExpressionReader {
   }
   void Take(std::size_t size) { rest_ = Trimmed(rest_.substr(size)); }
 
-  /// Takes the longest name before an operator or the end, or # and a number.
+  /// Takes the name before the next operator, or # and a number.
   std::optional<std::size_t> TakeColumn() {
-    for (std::size_t end = rest_.size(); end != std::string_view::npos && end > 0;
-         end = rest_.find_last_of(kOperators, end - 1)) {
-      const std::string_view name = Trimmed(rest_.substr(0, end));
-      if (name.empty()) continue;
-      const auto number =
-          name.front() == '#' ? NumberIn<std::size_t>(Trimmed(name.substr(1))) : std::nullopt;
-      const auto column = number ? std::optional(Numbered(*number, names_.size(), where_))
-                                 : names_.Named(name, role_);
-      if (!column) continue;
-      Take(end);
-      return column;
-    }
-    return std::nullopt;
+    const std::size_t end = std::min(rest_.find_first_of(kOperators), rest_.size());
+    const std::string_view name = Trimmed(rest_.substr(0, end));
+    const auto number =
+        name.starts_with('#') ? NumberIn<std::size_t>(Trimmed(name.substr(1))) : std::nullopt;
+    const auto column = number ? std::optional(Numbered(*number, names_.size(), where_))
+                               : names_.Named(name, role_);
+    if (column) Take(end);
+    return column;
   }
 
   double TakeNumber() {

@@ -170,10 +170,11 @@ class RecordBuilder {
       is_missing = std::isnan(of.values[row]);
       return is_missing ? of.missing : of.broken;
     }
-    for (const Quantity& quantity : quantities_) {
-      if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
+    const Quantity& time = quantities_[2];
+    if (!file_.time || last_time_ >= time_above_) {
+      return fmt::format("{}:{}: has a number that is too large in SI units", table.file,
+                         table.lines[row]);
     }
-    const Quantity& time = quantities_[2];  // the only fault that is left
     return fmt::format(
         "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
         "the "
@@ -215,22 +216,21 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     is_read[column] = true;
     return true;
   };
+  const auto mark = [&](const ChosenColumn& used) {
+    if (used) is_read[used.index - 1] = true;
+  };
+  mark(file.displacement);
+  mark(file.force);
   for (const std::string& choice : choices) {
     const std::size_t column = names.Chosen(choice, Role::kOther);
-    const bool is_displacement = column + 1 == file.displacement.index;
-    if (is_displacement || column + 1 == file.force.index) {
-      Refuse("{}: {} is the {} already: choose another column for the covariate", table.file,
-             names.Label(column), is_displacement ? "displacement" : "force");
-    }
     if (is_read[column]) {
-      Refuse("{}: {} is chosen twice as a covariate: choose it once", table.file,
+      Refuse("{}: {} is used already: choose another column for the covariate", table.file,
              names.Label(column));
     }
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
-  for (const auto& used : {file.displacement, file.force, file.time, file.normal_load}) {
-    if (used) is_read[used.index - 1] = true;
-  }
+  mark(file.time);
+  mark(file.normal_load);
   const std::size_t most = choices.size() + kMostOtherColumns;
   for (std::size_t column = 0; column < names.size(); ++column) {
     if (is_read[column] || names[column].is_clock) continue;

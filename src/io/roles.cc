@@ -306,23 +306,19 @@ class RoleAssigner {
     constexpr double kGreatest = 2;
     const Quantity& force = roles_[static_cast<std::size_t>(Role::kForce)];
     if (!force.given_unit.empty() || force.is_scaled) return;
-    const std::size_t taken = force.first_column();
-    std::vector<std::size_t> coefficients;
-    std::size_t loads = 0;
+    const ColumnNames::Column& taken = names_[force.first_column()];
+    const bool keeps_sign = taken.least > 0 || taken.greatest < 0;
+    const auto loads = std::ranges::count_if(names_.columns(), [](const auto& of) {
+      return of.dimension == Dimension::kForce || of.evidence.names(Role::kNormalLoad);
+    });
     for (std::size_t column = 0; column < names_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const bool is_friction = of.evidence.word == "friction" || of.evidence.word == "f";
-      if (of.dimension == Dimension::kForce || of.evidence.names(Role::kNormalLoad)) ++loads;
-      if (of.evidence.names(Role::kFrictionCoefficient) ||
-          (is_friction && of.unit.empty() && of.GreatestMagnitude() < kGreatest)) {
-        coefficients.push_back(column);
-      }
-    }
-    const bool keeps_sign = names_[taken].least > 0 || names_[taken].greatest < 0;
-    for (const std::size_t column : coefficients) {
-      const bool is_named = names_[column].evidence.names(Role::kFrictionCoefficient);
-      const bool is_taken = column == taken && (is_named || loads > 0);
-      if (!is_taken && !(column != taken && finds_force && keeps_sign && loads < 2)) continue;
+      const bool is_named = of.evidence.names(Role::kFrictionCoefficient);
+      const bool may_be = (of.evidence.word == "friction" || of.evidence.word == "f") &&
+                          of.unit.empty() && of.GreatestMagnitude() < kGreatest;
+      const bool is_taken = &of == &taken && (is_named || (may_be && loads > 0));
+      const bool is_beside_load = &of != &taken && finds_force && keeps_sign && loads < 2;
+      if (!is_taken && !(is_beside_load && (is_named || may_be))) continue;
       Refuse(
           "{}:{}: {} is a coefficient of friction, or looks like one, and no force: choose the "
           "force with --force, or multiply by the normal load, where that is 50 N by --force "
@@ -402,19 +398,9 @@ const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(
 std::vector<double> Quantity::Numbers(const CsvTable& table) const {
   for (const Term& term : terms) static_cast<void>(table.Numbers(term.column));
   std::vector<double> values(table.rows());
-  for (std::size_t row = 0; row < values.size(); ++row) {
+  for (std::size_t row = 0; row < values.size(); ++row)
     values[row] = unit.ToSi(ValueIn(table, row));
-    if (!std::isfinite(values[row])) throw InputError(TooLarge(table, row));
-  }
   return values;
-}
-
-std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
-  const double value = ValueIn(table, row);
-  if (std::isfinite(unit.ToSi(value))) return "";
-  return fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units",
-                     table.file, table.lines[row], first_column() + 1, RulesOf(role).name, value,
-                     unit.symbol);
 }
 
 std::optional<bool> ColumnNames::Column::IsAngular(std::string_view given_unit) const {

@@ -53,10 +53,8 @@ struct Quantity {
     return value;
   }
   /// Returns its values in SI units, one a row.
-  /// @throws InputError where one is missing or too large
+  /// @throws InputError where one is missing
   [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
-  /// Returns what is said of a row whose value is not finite in SI units, else "".
-  [[nodiscard]] std::string TooLarge(const CsvTable& table, std::size_t row) const;
 };
 
 /// The names and numbers of a table's columns, for choices and messages.
@@ -84,6 +82,7 @@ class ColumnNames {
 
   [[nodiscard]] std::size_t size() const { return columns_.size(); }
   const Column& operator[](std::size_t column) const { return columns_[column]; }
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] const CsvTable& table() const { return table_; }
 
   /// Reads what an option says of a role's columns: a name or a number from 1, "Fx", "3"; with a

@@ -111,7 +111,7 @@ x,F¶1,2¶3,"1,234.5"¶ | :3:2: '1,234.5' +kGroups
 x;F¶1;2¶3;1.234,5¶ | :3:2: '1.234,5' +kGroups
 x,F¶1,2¶3,+-4¶ | :3:2: '+-4' +kWrite
 a,1,2¶1,b,2¶1,2,c¶ | :1:1: 'a' +kWrite
-x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' is too large: must be below 1.8e308
+x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' +kWrite
 x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kFill
 x;F¶1,5;2¶3;4.5¶ | :3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one throughout
 x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row has 2 cells of 3: complete it or remove it

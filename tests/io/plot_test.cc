@@ -292,12 +292,12 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
   EXPECT_EQ(refusal(Plot{}), "number of panels = 0 is invalid: must be >= 1");
   EXPECT_EQ(refusal(OnePanel({"fit", {0, 1}, {0}})),
             "x of 'fit' has 2 values and y of 'fit' has 1: must be equal");
-  EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "'fit' has no points: must have one");
+  EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "y of 'fit' has no points: must have one");
   EXPECT_EQ(refusal(OnePanel({"fit", {0}, {std::nan("")}})),
             "y of 'fit' = nan is invalid: must be finite");
   Plot logarithmic = OnePanel({"fit", {0, 1}, {1, 1}});
   logarithmic.panels.front().log_x = true;
-  EXPECT_EQ(refusal(logarithmic), "x of 'fit' = 0 is invalid: must be > 0 on a logarithmic axis");
+  EXPECT_EQ(refusal(logarithmic), "x of 'fit' = 0 is invalid: must be finite and > 0");
   Plot empty = OnePanel({"fit", {0}, {0}});
   empty.panels.front().series.clear();
   EXPECT_EQ(refusal(empty), "a panel has no series: must have one");

@@ -171,8 +171,7 @@ x / m/s,F¶1,2¶ | - | - | :1:1: the unit 'm/s' of 'x / m/s' (column 1) is not k
    --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [mm],F¶um,N¶1,2¶ | - | - | :1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below
    it: choose its unit with --displacement '1 [mm]'
-x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3:2: force = 1e+307 kN is too large: must be below 1.8e308
-   in SI units
+x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3: has a number that is too large in SI units
 x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or remove
    the row
 x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or
@@ -269,10 +268,10 @@ TEST(Covariates, ThatCannotBeAreRefusedByName) {
             "loop.csv: --covariate q: no column is called 'q' (for the covariate): the columns are "
             "'x [m]' (1), 'F [N]' (2), 'p' (3)");
   EXPECT_EQ(refusal({"p", "3"}),
-            "loop.csv: 'p' (column 3) is chosen twice as a covariate: choose it once");
-  EXPECT_EQ(refusal({"F"}),
-            "loop.csv: 'F [N]' (column 2) is the force already: choose another column for the "
-            "covariate");
+            "loop.csv: 'p' (column 3) is used already: choose another column for the covariate");
+  EXPECT_EQ(
+      refusal({"F"}),
+      "loop.csv: 'F [N]' (column 2) is used already: choose another column for the covariate");
 }
 
 TEST(ImposedDisplacement, IsTheFirstOrTheOneThatIsChosenInItsUnit) {

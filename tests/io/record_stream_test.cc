@@ -77,7 +77,7 @@ TEST(RecordStream, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotA
        {std::tuple("time,x,F\n", "12:00:00.5,{},1\n", "noon,1,2\n", ":1: 'noon' is not a number"),
         {"x;F\n", "{};0,500000000000\n", "1;1.5\n", ":2: '1.5' has the decimal mark '.'"},
         {"x [um],F [kN]\n", "{},0.500000000000\n", "1,1e307\n",
-         ":2: force = 1e+307 kN is too large"}}) {
+         ": has a number that is too large"}}) {
     std::string text = header;
     for (std::size_t i = 0; i < kRows; ++i) text += fmt::format(fmt::runtime(row), i % 7);
     text += broken + fmt::format(fmt::runtime(row), 3);
