@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 Uncertain = Union[float, tuple[float, float]]
 """A number, or a pair of it and one standard uncertainty, both in its unit."""
 
-_FLAGS = ("join", "compare")
+_FLAGS = ("compare",)
 _RANGES = ("cycles", "samples", "time_window", "load_window", "bound", "select")
 _OPTIONS = {"with_file": "with"}
 

@@ -24,7 +24,7 @@ def fit(
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
     encoding: str = "", sample_rate: Optional[float] = None,
     with_file: Union[None, str, os.PathLike[str]] = None, broken_rows: str = "refuse",
-    join: bool = False, model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
+    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True,
     rig_stiffness: Optional[Union[Asked, tuple[float, float]]] = None,
     terms: Union[str, Sequence[str]] = "none", compare: bool = False,
@@ -59,8 +59,7 @@ def fit(
             A column is "Fx", 5, "5 [mm]", or a sum, "cell1+cell2".
     encoding: of files, as iconv names it. sample_rate: [Hz], where there is no time. with_file:
         another file of the same test, whose columns follow. broken_rows: of files, "refuse" or
-        "skip". join: a list is one record in pieces, as of a logger that begins a file with every
-        stroke.
+        "skip".
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
 
     The model

@@ -54,7 +54,7 @@ def track(source: Any = None, force: Any = None, *, average: int = 1, every: int
     """Fits every cycle of a long record on its own: one row a cycle.
 
     source, force: as of fit(). A file is read piece by piece, in constant memory; a list of sources is
-        one test in this order, and no cycle extends over two sources unless join is True.
+        one test in this order, and no cycle extends over two sources.
     average: number of consecutive cycles that are fitted together. every: fits only every n-th.
     threads: number of workers; default one per core. executor: where the test is tracked instead of
         here, as of batch(): what it gives back is pickled.

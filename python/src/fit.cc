@@ -77,7 +77,6 @@ py::dict KeptOf(const py::object& self) {
 FitRequest RequestOf(const std::vector<std::string>& words) {
   FitRequest request;
   cli::ReadOptions(words, [&request](CLI::App& app) {
-    cli::AddJoin(app, request);
     cli::AddFitOptions(app, request, cli::NormalLoads::kOneAFile);
   });
   return request;

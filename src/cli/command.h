@@ -182,8 +182,6 @@ double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig =
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
 
-void AddJoin(CLI::App& command, FitRequest& options);
-
 /// Adds the options that say which columns of a record are read, and in what unit.
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
 

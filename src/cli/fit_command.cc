@@ -64,7 +64,6 @@ void AddFitCommand(CLI::App& app, Console& console) {
   OptionGroup(command, kPlainGroup)
       .Add("files", options->request.files, "CSV records of one contact", "FILE")
       ->required();
-  AddJoin(command, options->request);
   AddFitOptions(command, options->request, NormalLoads::kOneAFile);
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");

@@ -324,13 +324,6 @@ std::string DescribeParameters() {
 
 }  // namespace
 
-void AddJoin(CLI::App& command, FitRequest& options) {
-  OptionGroup(command, "Files")
-      .AddFlag("--join", options.join,
-               "join the files, in their order, into one record, as of a logger that\nbegins a "
-               "file every stroke; a clock that starts anew is continued");
-}
-
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const OptionGroup group(command, kColumnGroup);
   group.Add("--displacement", columns.displacement,

@@ -323,7 +323,6 @@ class TrackRun {
       test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     }
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
-    if (options_.fit.join) io::RequireJoinable(*layout_, layout);
     if (layout.is_torsional == test_.is_torsional) return;
     Refuse("{} holds a {} and {} a {}: track them apart", test_.files.front(),
            test_.is_torsional ? "torque" : "force", layout.name,
@@ -362,17 +361,11 @@ class TrackRun {
     }
     while (piece.size() > 0) {
       test_.samples += piece.size();
-      for (double& time : piece.time) time = times_.Next(time);
       tracker_->Add(piece, piece.lines);
       AskWhetherToGoOn();
       if (!stream.Next(piece)) break;
     }
-    if (options_.fit.join) {
-      times_.NextPiece();
-    } else {
-      test_.unused_samples += tracker_->NextFile();
-      times_ = {};
-    }
+    test_.unused_samples += tracker_->NextFile();
     const io::LeftOutRows& left_out = stream.layout().left_out;
     if (left_out.count == 0) return;
     if (options_.fit.columns.skip_broken_rows) test_.broken_rows += left_out.count;
@@ -424,7 +417,6 @@ class TrackRun {
   /// Reads and fits all cycles.
   void Read() {
     for (const std::string& file : options_.fit.files) ReadFile(file);
-    if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
     tracker_->Finish();
     if (kept_.fits > 0) OpenTable();  // also of a record that ends with it, or before
     if (output_) output_->Finish();
@@ -438,7 +430,6 @@ class TrackRun {
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   TrackedTest test_;
-  io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
   KeptCycles kept_;
@@ -476,7 +467,6 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       .Add("files", options->fit.files,
            "CSV records of one test, in order; no cycle extends over two files", "FILE")
       ->required();
-  AddJoin(command, options->fit);
   AddColumnOptions(command, options->fit.columns);
   AddModelOptions(command, options->fit);
   for (const char* refused : {"--compare", "--covariate", "--noise-in"}) {

@@ -6,10 +6,8 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <system_error>
 #include <utility>
 
-#include "core/platform.h"
 #include "io/source.h"
 #include "io/table_reader.h"
 #include "mindahl/core/error.h"
@@ -36,16 +34,6 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   const std::string name = NameOfInput(path);
   LinePieces pieces(path, encoding);
   std::string_view text = pieces.Next();
-  std::error_code is_no_file;
-  const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
-  // Measured for fits of records of three columns: 1.14 kB a row of 59 bytes.
-  constexpr std::uintmax_t kMemory = 20;  // bytes a byte
-  if (!is_no_file && size > MemoryOfProcess() / kMemory) {
-    Refuse(
-        "{}: {} of it need about {} of memory, more than the {} that the process may have: fit a "
-        "part of the file, every n-th row, or each cycle with mindahl track",
-        name, BytesInWords(size), BytesInWords(kMemory * size), BytesInWords(MemoryOfProcess()));
-  }
   const Layout layout = FindLayout(text, name);
   TableReader reader(layout);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {

@@ -61,48 +61,4 @@ double JoinedTimes::Next(double time) {
   return time;
 }
 
-void RequireJoinable(const RecordFile& first, const RecordFile& next) {
-  const auto require = [&](bool same, std::string_view what) {
-    if (same) return;
-    Refuse(
-        "--join: one of {} and {} has {} and the other does not: pieces of one record must have "
-        "the same columns",
-        first.name, next.name, what);
-  };
-  require(bool(next.time) == bool(first.time), "a time");
-  require(bool(next.normal_load) == bool(first.normal_load), "a normal load");
-  require(next.is_torsional == first.is_torsional, "a torque");
-}
-
-RecordFile Joined(std::vector<RecordFile> records) {
-  RecordFile joined = std::move(records.front());
-  joined.lines.clear();
-  JoinedTimes times;
-  const auto shift = [&](double time) { return times.Next(time); };
-  std::ranges::transform(joined.record.time, joined.record.time.begin(), shift);
-  for (std::size_t k = 1; k < records.size(); ++k) {
-    RecordFile& next = records[k];
-    RequireJoinable(joined, next);
-    times.NextPiece();
-    std::ranges::transform(next.record.time, next.record.time.begin(), shift);
-    const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    loop::Record& record = joined.record;
-    for (const auto column : loop::kRecordColumns) append(next.record.*column, record.*column);
-    for (std::size_t c = record.covariates.size(); c-- > 0;) {
-      const auto same = std::ranges::find(next.record.covariates, record.covariates[c].name,
-                                          &loop::Covariate::name);
-      if (same != next.record.covariates.end()) {
-        append(same->values, record.covariates[c].values);
-      } else {
-        record.covariates.erase(record.covariates.begin() + static_cast<std::ptrdiff_t>(c));
-      }
-    }
-    joined.notes.insert(joined.notes.end(), next.notes.begin(), next.notes.end());
-  }
-  joined.name = fmt::format("{} … {}", joined.name, records.back().name);
-  return joined;
-}
-
 }  // namespace mindahl::io

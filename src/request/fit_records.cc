@@ -457,7 +457,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (const std::optional<Interval>& window = request.time_window) {
     for (RecordFile& input : inputs) io::KeepTimeWindow(input, window->lower, window->upper);
   }
-  if (request.join && inputs.size() > 1) inputs = {io::Joined(std::move(inputs))};
   RequireLoadsOf(inputs.size(), request);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     Refuse(

@@ -36,7 +36,7 @@ const std::vector<Rule> kRules = {
      {"--model", "--initial-state", "--force-sign", "--noise-in", "--offsets", "--loss", "--trim"},
      kNoNumber + Words{"-1", "0", ""}},
     {"fit", {"--fix", "--start"}, kAssignment},
-    {"fit", {"--join", "--compare", "--details"}, {"5", "nan", "text"}},
+    {"fit", {"--compare", "--details"}, {"5", "nan", "text"}},
     {"fit",
      {"--select"},
      {"nan", "text", "1:2", "cycles", "cycles=", "cycles=1", "time=2:1", "load=2:1", "cycles=2:1",

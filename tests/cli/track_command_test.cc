@@ -134,12 +134,6 @@ TEST_F(TrackCommand, RefusesToGoOnWhereAnEarlyRowOfTheRecordWasChanged) {
   }
 }
 
-TEST_F(TrackCommand, RefusesToJoinPiecesOfWhichOneHasNoTime) {
-  const std::string untimed = Write("untimed.csv", "displacement [m],force [N]\n0,0\n1e-6,2\n");
-  ExpectRefused(Track("joined.csv") + Words{untimed, "--join"},
-                "has a time and the other does not");
-}
-
 TEST_F(TrackCommand, WritesOverNothingUnasked) {
   const std::string whole = Whole();
   ExpectRefused(Track("whole.csv"), "--resume");

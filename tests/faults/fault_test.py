@@ -54,7 +54,7 @@ COMMANDS = [
     Command("batch", ["batch", "a.csv", "b.csv", "--output", "out.csv", "--json", "out.json",
                       "--report", "pages", "--threads", "2", "--overwrite"],
             ["out.csv", "out.json", "pages/a.html", "pages/b.html", "pages/index.html"], parts=2),
-    Command("track", ["track", "long.csv", "a.csv", "--join", "--output", "table.csv", "--json", "out.json",
+    Command("track", ["track", "long.csv", "a.csv", "--output", "table.csv", "--json", "out.json",
                       "--report", "out.html", "--threads", "2"], ["out.json", "out.html"],
             table="table.csv"),
 ]

@@ -101,17 +101,6 @@ std::string RecordOfCycles(int cycles) {
   return text;
 }
 
-/// Returns the parts of a text between separators, as files of the memory; at least one.
-std::vector<std::unique_ptr<MemoryFile>> FilesOf(const std::string& text) {
-  constexpr char kSeparator = '\x1d';
-  constexpr std::size_t kMost = 4;
-  std::vector<std::unique_ptr<MemoryFile>> files;
-  for (const std::string_view part : PartsOf(text, kSeparator)) {
-    if (files.size() < kMost) files.push_back(std::make_unique<MemoryFile>(part));
-  }
-  return files;
-}
-
 struct TrackedTest {
   MemoryFile record{RecordOfCycles(140)};
   std::string table;
@@ -159,23 +148,6 @@ void TrackRecords(Input input) {
   AddOptions(words, kOptionsOfTrack, bytes);
   const MemoryFile record(bytes.Text());
   words[1] = record.name();
-  const Outcome outcome = Run(words);
-  RequireFiniteCells(output.Content());
-  if (outcome.status == cli::kBadInput) return;
-  RequireNumbers(outcome.out);
-}
-
-void JoinRecords(Input input) {
-  Bytes bytes(input);
-  const bool is_track = bytes.Byte() % 2 == 1;
-  const MemoryFile output("");
-  Words options = {"--join", "--json", "-"};
-  if (is_track) Append(options, {"--output", output.name(), "--overwrite", "--threads", "1"});
-  AddOptions(options, is_track ? kOptionsOfTrack : kOptionsOfFit, bytes);
-  const auto files = FilesOf(bytes.Text());
-  Words words = {is_track ? "track" : "fit"};  // then files, before options that take any number
-  for (const auto& file : files) words.push_back(file->name());
-  Append(words, options);
   const Outcome outcome = Run(words);
   RequireFiniteCells(output.Content());
   if (outcome.status == cli::kBadInput) return;

@@ -39,8 +39,6 @@ void FitRecords(Input input);
 void TrackRecords(Input input);
 /// Runs `track --resume` on any table: it is completed to the undisturbed one, or left alone.
 void ResumeTables(Input input);
-/// Runs `fit --join` or `track --join` on pieces of a record.
-void JoinRecords(Input input);
 
 inline constexpr std::array kTargets = {Target{"csv", &ReadRecords, 4096},
                                         Target{"units", &LookUpUnits, 64},
@@ -50,7 +48,6 @@ inline constexpr std::array kTargets = {Target{"csv", &ReadRecords, 4096},
                                         Target{"fit", &FitRecords, 4096},
                                         Target{"track", &TrackRecords, 4096},
                                         Target{"resume", &ResumeTables, 256},
-                                        Target{"join", &JoinRecords, 4096},
                                         Target{"encodings", &ReadEncodedRecords, 4096}};
 
 /// Ends the program where a property does not hold.

@@ -198,16 +198,6 @@ TEST(CsvTable, RefusesALineThatDoesNotEnd) {
       path.string() + ": has a line of more than 16777216 bytes: lines must end in LF or CRLF");
 }
 
-TEST(CsvTable, RefusesWhatNoMemoryHolds) {
-  const TemporaryDirectory directory;
-  std::string text = "x,F\n";
-  while (text.size() < (2U << 20U)) text += "0.5,0.25\n";
-  const std::filesystem::path path = directory.Write("long.csv", text);
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 42U);  // sparse
-  EXPECT_THAT(MessageOf<InputError>([&] { ReadCsvTable(path); }),
-              HasSubstr("4.4e+03 GB of it need about"));
-}
-
 TEST(CsvTable, SaysWhyAFileCannotBeRead) {
   const TemporaryDirectory directory;
   const auto refusal = [](const std::filesystem::path& path) {

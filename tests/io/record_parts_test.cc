@@ -66,32 +66,13 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(refusal(), HasSubstr("needs a time column"));
 }
 
-TEST(Joined, JoinsPiecesWhoseClockBeginsAnew) {
-  const auto piece = [&](const std::string& name, const std::string& rows) {
-    RecordFile file = Read("time [s],x [m],F [N],c\n" + rows);
-    file.name = name;
-    return file;
-  };
-  const RecordFile joined =
-      Joined({piece("a", "0,0,1,5\n1,1,2,6\n"), piece("b", "0,2,3,7\n1,3,4,8\n"),
-              piece("c", "7,4,5,9\n8,5,6,1\n")});
-  EXPECT_EQ(joined.name, "a … c");
-  EXPECT_THAT(joined.record.time, ElementsAre(0, 1, 2, 3, 9, 10))
+TEST(Blocks, GoOnByOneStepWhereAClockBeginsAnew) {
+  const std::string header = "time [s],x [m],F [N]\n";
+  const RecordFile file =
+      Read(header + "0,0,1\n1,1,2\n" + header + "0,2,3\n1,3,4\n" + header + "7,4,5\n8,5,6\n");
+  EXPECT_THAT(file.record.time, ElementsAre(0, 1, 2, 3, 9, 10))
       << "a clock that begins anew goes on by one step, and keeps its zero from there";
-  EXPECT_THAT(joined.record.force, ElementsAre(1, 2, 3, 4, 5, 6));
-  EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(5, 6, 7, 8, 9, 1));
-  EXPECT_THAT(MessageOf<InputError>([&] {
-                Joined({piece("a", "0,0,1,5\n1,1,2,6\n"), Read("x [m],F [N]\n0,1\n1,2\n")});
-              }),
-              AllOf(HasSubstr("one of a and "), HasSubstr("loop.csv has a time")));
-}
-
-TEST(Joined, PiecesKeepTheCovariatesThatAllHave) {
-  const RecordFile joined =
-      Joined({Read("x [m],F [N],b,c\n0,1,5,7\n1,2,6,8\n"), Read("x [m],F [N],c\n2,3,9\n3,4,0\n")});
-  ASSERT_EQ(joined.record.covariates.size(), 1u);
-  EXPECT_EQ(joined.record.covariates.front().name, "c");
-  EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(7, 8, 9, 0));
+  EXPECT_THAT(file.record.force, ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
 }  // namespace

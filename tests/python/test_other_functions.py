@@ -79,10 +79,6 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     printed = program("track", long_record, worn, "--output", tmp_path / "third.csv")
     assert tracked.text() == printed.replace(f" in {tmp_path}/third.csv", "")
     assert "<pre>" in tracked._repr_html_() and tracked.established
-    # Pieces of one record: a cycle goes on in the next, and what is left of the last one counts.
-    joined = program_json("track", long_record, worn, "--join", "--output", tmp_path / "joined.csv")
-    assert joined["input"]["unused_samples"] > 0
-    assert mindahl.track([long_record, worn], join=True).to_dict()["input"] == joined["input"]
     step, = tracked.quantities["slip_force"]["steps"]
     assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)
     assert any(line.startswith(f"slip_force: a step at cycle {step['cycle']}, ") for line in tracked.changes)

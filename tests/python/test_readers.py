@@ -216,20 +216,13 @@ def test_datasets_of_xarray_are_fitted_with_the_units_of_their_attributes(sphere
         assert of_arrays.parameters[name].value == expected.parameters[name].value
 
 
-def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
+def test_columns_in_volts_are_calibrated(tmp_path, sphere):
     time, displacement, force = sphere
     expected = mindahl.fit(displacement, force, time=time, initial_state="virgin")
-    cut = len(time) // 3
-    pieces = []
-    for k, part in enumerate((slice(0, cut), slice(cut, None))):
-        path = tmp_path / f"stroke{k}.csv"
-        rows = np.column_stack([time[part] - time[part][0], displacement[part],
-                                force[part] / 8 + 0.5])
-        np.savetxt(path, rows, delimiter=",", fmt="%.17g", header="time [s],x [m],F [V]", comments="")
-        pieces.append(path)
-    found = mindahl.fit(pieces, join=True, force="F*8-4 [N]", initial_state="virgin")
-    assert len(found.records) == 1
-    is_as(found, expected)
+    path = tmp_path / "volts.csv"
+    np.savetxt(path, np.column_stack([time, displacement, force / 8 + 0.5]), delimiter=",", fmt="%.17g",
+               header="time [s],x [m],F [V]", comments="")
+    is_as(mindahl.fit(path, force="F*8-4 [N]", initial_state="virgin"), expected)
     path = tmp_path / "of_a_zero_alone.csv"
     np.savetxt(path, np.column_stack([time, displacement, force + 0.5]), delimiter=",", fmt="%.17g",
                header="time [s],x [m],F [N]", comments="")

@@ -193,26 +193,6 @@ TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {
   EXPECT_NEAR(report.known.normal_load->value, mean, 1e-9);
 }
 
-TEST(FitRecords, JoinsPiecesOfOneRecord) {
-  const io::RecordFile whole = LoopFile();
-  io::RecordFile first = whole;
-  io::RecordFile second = whole;
-  for (const auto column : {&loop::Record::displacement, &loop::Record::force}) {
-    (first.record.*column).resize(41);
-    (second.record.*column)
-        .erase((second.record.*column).begin(), (second.record.*column).begin() + 41);
-  }
-  first.name = "a.csv";
-  second.name = "b.csv";
-  FitRequest request;
-  request.join = true;
-  const report::Report joined = FitRecords(request, {first, second});
-  EXPECT_EQ(joined.files(), std::vector<std::string>{"a.csv … b.csv"});
-  const report::Report one = FitRecords({}, {whole});
-  EXPECT_EQ(joined.fit.law.slip_force, one.fit.law.slip_force);
-  EXPECT_EQ(joined.fit.rms, one.fit.rms);
-}
-
 // ---
 // --trim on: a fit of a record without what is no part of its test, and what is said of it.
 

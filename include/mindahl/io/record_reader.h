@@ -133,11 +133,11 @@ class RecordStream {
   std::unique_ptr<State> state_;
 };
 
-/// Puts the times of files, or blocks of a file, that are pieces of one record one after the other:
-/// where a clock begins anew, one step after the last time of the piece before.
+/// Puts the times of blocks of a file one after the other: where a clock begins anew, one step
+/// after the last time of the block before.
 class JoinedTimes {
  public:
-  /// Declares that the times that follow are from another piece.
+  /// Declares that the times that follow are from another block.
   void NextPiece() { begins_ = true; }
   /// Returns the next time, in its unit, in the joined record.
   double Next(double time);
@@ -148,13 +148,6 @@ class JoinedTimes {
   double last_ = -std::numeric_limits<double>::infinity();
   double step_ = 0.0;
 };
-
-/// @throws InputError where one of two pieces of a record has a column that the other has not
-void RequireJoinable(const RecordFile& first, const RecordFile& next);
-
-/// Joins records, in their order, into one. Lines are left out; covariates are those of all.
-/// @throws InputError where one has a time, a load or a torque and another has not
-RecordFile Joined(std::vector<RecordFile> records);
 
 /// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very
 /// doubles of the file.

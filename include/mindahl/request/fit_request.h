@@ -25,7 +25,6 @@ std::vector<std::string_view> ModelNames();
 struct FitRequest {
   std::vector<std::string> files{};
   io::RecordColumns columns{};
-  bool join = false;                                      // the files are pieces of one record
   std::optional<identification::Interval> time_window{};  // [s]
   /// Holds the options as given, without what the members below add; no model: --model auto.
   identification::FitOptions fit{.model = nullptr};
