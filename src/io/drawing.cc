@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/locale/utf.hpp>
+#include <boost/locale/encoding_utf.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -316,24 +316,20 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
 }
 
 std::string HtmlText(std::string_view text) {
-  using Utf8 = boost::locale::utf::utf_traits<char>;
+  // What is not UTF-8 is left out.
+  const std::string valid =
+      boost::locale::conv::utf_to_utf<char>(text.data(), text.data() + text.size());
   std::string escaped;
-  escaped.reserve(text.size());
-  for (const char *at = text.data(), *end = at + text.size(); at != end;) {
-    const char* next = at;
-    const char32_t character = Utf8::decode(next, end);
-    const bool is_text =
-        character != boost::locale::utf::illegal && character != boost::locale::utf::incomplete &&
-        (character >= 0x20 || character == '\n' || character == '\t') && character != 0x7F;
-    if (!is_text) next = at + 1;
-    escaped += !is_text            ? "\uFFFD"
-               : character == '&'  ? "&amp;"
-               : character == '<'  ? "&lt;"
-               : character == '>'  ? "&gt;"
-               : character == '"'  ? "&quot;"
-               : character == '\'' ? "&#39;"
-                                   : std::string_view(at, next);
-    at = next;
+  for (const char& character : valid) {
+    const auto byte = static_cast<unsigned char>(character);
+    const bool is_blank = character == '\n' || character == '\t';
+    escaped += (byte < 0x20 && !is_blank) || byte == 0x7F ? "\uFFFD"
+               : character == '&'                         ? "&amp;"
+               : character == '<'                         ? "&lt;"
+               : character == '>'                         ? "&gt;"
+               : character == '"'                         ? "&quot;"
+               : character == '\''                        ? "&#39;"
+                                                          : std::string_view(&character, 1);
   }
   return escaped;
 }

@@ -9,7 +9,8 @@
 namespace mindahl::io {
 
 /// Returns the text that a page of HTML shows as it is, between tags or in quotes: & < > " ' are
-/// escaped; what is not UTF-8, and control characters but for the line feed, become U+FFFD.
+/// escaped; what is not UTF-8 is left out, and control characters but for the line feed become
+/// U+FFFD.
 std::string HtmlText(std::string_view text);
 
 /// Holds a series of a legend: its symbol as elements of SVG in 26 x 12 px, and its label.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 #include <utility>
@@ -12,8 +13,6 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::string_view kOperators = "+-*";
-
 /// Returns the column of a number from 1.
 /// @param where  it stands, for the refusal of one that there is not
 std::size_t Numbered(std::size_t number, std::size_t columns, const std::string& where) {
@@ -22,88 +21,68 @@ std::size_t Numbered(std::size_t number, std::size_t columns, const std::string&
          columns == 1 ? "" : "s");
 }
 
-/// Reads a sum of products, each of numbers and at most one column.
-class ExpressionReader {
- public:
-  ExpressionReader(std::string_view text, const ColumnNames& names, Role role, std::string where)
-      : rest_(text), names_(names), role_(role), where_(std::move(where)) {}
-
-  Quantity Read() {
-    Quantity sum{.role = role_};
-    do {
-      double factor = 1.0;
-      for (; rest_.starts_with('-') || rest_.starts_with('+'); Take(1)) {
-        if (rest_.front() == '-') factor = -factor;
-      }
-      std::optional<std::size_t> column;
-      for (;; Take(1)) {
-        if (const auto found = TakeColumn()) {
-          if (column) ThrowNoSum();
-          column = found;
-        } else {
-          factor *= TakeNumber();
-          sum.is_scaled = true;
-        }
-        if (!rest_.starts_with('*')) break;
-      }
-      if (!std::isfinite(factor) || (column && factor == 0)) ThrowNoSum();
-      if (column) {
-        sum.terms.push_back({*column, factor});
-      } else {
-        sum.offset += factor;
-      }
-    } while (!rest_.empty());
-    if (sum.terms.empty()) ThrowNoSum();
-    return sum;
+/// Returns the column that is called so in a sum, by its name or by # and its number.
+std::size_t ColumnInSum(std::string_view name, const ColumnNames& names, Role role,
+                        const std::string& where) {
+  if (name.starts_with('#')) {
+    if (const auto number = NumberIn<std::size_t>(Trimmed(name.substr(1)))) {
+      return Numbered(*number, names.size(), where);
+    }
   }
+  if (const auto column = names.Named(name, role)) return *column;
+  std::vector<std::string> known;
+  for (const ColumnName& column : names.columns()) known.push_back(ForMessage(column.name));
+  Refuse("{}: no column is called '{}' (for the {}){} {}", where, name, RulesOf(role).name,
+         DidYouMean(name, known), names.Listing());
+}
 
- private:
-  [[noreturn]] void ThrowNoSum() const {
+/// Reads a sum of products, each of numbers and at most one column.
+Quantity ReadSum(std::string_view rest, const ColumnNames& names, Role role,
+                 const std::string& where) {
+  constexpr std::string_view kOperators = "+-*";
+  const auto require = [&](bool is_sum) {
+    if (is_sum) return;
     Refuse(
         "{}: must be a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], "
         "with #3 for the third column",
-        where_);
-  }
-  void Take(std::size_t size) { rest_ = Trimmed(rest_.substr(size)); }
-
-  /// Takes the name before the next operator, or # and a number.
-  std::optional<std::size_t> TakeColumn() {
-    const std::size_t end = std::min(rest_.find_first_of(kOperators), rest_.size());
-    const std::string_view name = Trimmed(rest_.substr(0, end));
-    const auto number =
-        name.starts_with('#') ? NumberIn<std::size_t>(Trimmed(name.substr(1))) : std::nullopt;
-    const auto column = number ? std::optional(Numbered(*number, names_.size(), where_))
-                               : names_.Named(name, role_);
-    if (column) Take(end);
-    return column;
-  }
-
-  double TakeNumber() {
-    double value = 0.0;
-    const auto [stop, error] = FromChars(rest_.data(), rest_.data() + rest_.size(), value);
-    const auto size = static_cast<std::size_t>(stop - rest_.data());
-    const std::string_view after = Trimmed(rest_.substr(size));
-    const bool ends = after.empty() || kOperators.find(after.front()) != std::string_view::npos;
-    if (error != std::errc() || size == 0 || !std::isfinite(value) || !ends) {
-      const std::string_view name = Trimmed(rest_.substr(0, rest_.find_first_of(kOperators)));
-      if (name.empty()) ThrowNoSum();
-      std::vector<std::string> known;
-      known.reserve(names_.size());
-      for (std::size_t column = 0; column < names_.size(); ++column) {
-        known.push_back(ForMessage(names_[column].name));
-      }
-      Refuse("{}: no column is called '{}' (for the {}){} {}", where_, name, RulesOf(role_).name,
-             DidYouMean(name, known), names_.Listing());
+        where);
+  };
+  const auto take = [&](std::size_t size) { rest = Trimmed(rest.substr(size)); };
+  Quantity sum{.role = role};
+  do {
+    double factor = 1.0;
+    for (; rest.starts_with('-') || rest.starts_with('+'); take(1)) {
+      if (rest.front() == '-') factor = -factor;
     }
-    Take(size);
-    return value;
-  }
-
-  std::string_view rest_;
-  const ColumnNames& names_;
-  Role role_;
-  std::string where_;
-};
+    std::optional<std::size_t> column;
+    for (;; take(1)) {
+      double number = 0.0;
+      const auto [stop, error] = FromChars(rest.data(), rest.data() + rest.size(), number);
+      auto size = static_cast<std::size_t>(stop - rest.data());
+      const std::string_view after = Trimmed(rest.substr(size));
+      const bool ends = after.empty() || kOperators.find(after.front()) != after.npos;
+      if (error == std::errc() && size > 0 && ends) {
+        factor *= number;
+        sum.is_scaled = true;
+      } else {
+        size = std::min(rest.find_first_of(kOperators), rest.size());
+        const std::string_view name = Trimmed(rest.substr(0, size));
+        require(!name.empty() && !column);
+        column = ColumnInSum(name, names, role, where);
+      }
+      take(size);
+      if (!rest.starts_with('*')) break;
+    }
+    require(std::isfinite(factor) && (!column || factor != 0));
+    if (column) {
+      sum.terms.push_back({*column, factor});
+    } else {
+      sum.offset += factor;
+    }
+  } while (!rest.empty());
+  require(!sum.terms.empty());
+  return sum;
+}
 
 }  // namespace
 
@@ -126,7 +105,7 @@ Quantity ColumnNames::Read(const std::string& given, Role role) const {
   if (const auto number = NumberIn<std::size_t>(text)) {
     quantity.terms = {{Numbered(*number, size(), where), 1.0}};
   } else if (!text.empty()) {
-    quantity = ExpressionReader(text, *this, role, where).Read();
+    quantity = ReadSum(text, *this, role, where);
   }
   quantity.given_unit = std::move(unit);
   return quantity;

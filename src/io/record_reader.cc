@@ -170,11 +170,11 @@ class RecordBuilder {
       is_missing = std::isnan(of.values[row]);
       return is_missing ? of.missing : of.broken;
     }
-    const Quantity& time = quantities_[2];
     if (!file_.time || last_time_ >= time_above_) {
       return fmt::format("{}:{}: has a number that is too large in SI units", table.file,
                          table.lines[row]);
     }
+    const Quantity& time = quantities_[2];
     return fmt::format(
         "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
         "the "

@@ -39,10 +39,6 @@ constexpr std::string_view kOptionsOfTrack =
     " | --fix backlash=2e-7 | --rig-stiffness 1e8+-3% | --terms slip_trend"
     " | --encoding latin1";
 
-void Append(Words& words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-}
-
 /// Appends the options that a byte stands for.
 void AddOptions(Words& words, std::string_view more, Bytes& bytes) {
   std::vector<std::string_view> choices = PartsOf(kOptionsOfBoth, '|');

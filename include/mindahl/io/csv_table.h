@@ -60,17 +60,13 @@ struct CsvTable {
 /// be quoted (RFC 4180) within a line, a trailing delimiter is no cell.
 ///
 /// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
-/// meant to be numbers, one of them a number: "sample_rate,200" has none. The number of columns is
-/// that of most such rows. The data begin at the first row with so many cells and no text in a
-/// column of numbers; from there on every row is data but blank lines, rows of delimiters alone and
-/// comments, which begin with '#'. Text among the rows is an error, unless it repeats the header.
+/// meant to be numbers, one of them a number: "sample_rate,200" has none. The data begin at the
+/// first row with as many cells as most such rows and no text in a column of numbers. Text below is
+/// an error, unless it repeats the header; blank lines and comments, which begin with '#', are not.
 ///
-/// *Header.* The row above the data has the names; or, when at least half of its cells are symbols
-/// of units, these, with the names above it, or below it where all are. Of several rows of text,
-/// one with a name for every column of numbers and the most words that are known has the names.
-/// Rows above the header are skipped, except a row that states units ("Unit;mm;N") and the interval
-/// of a LabVIEW file. A file whose first row is data has the header of a last comment above it, or
-/// none. Anything else above the data is an error.
+/// *Header.* Of the rows of text above the data one with a name for every column of numbers has the
+/// names, and one where at least half of the cells are symbols of units has these; other rows are
+/// skipped. A file whose first row is data has the header of a last comment above it, or none.
 ///
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
 /// @param path         kStandardInput reads that, called "standard input" in messages

@@ -68,28 +68,25 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 ///
 /// *Columns.* As given; else by evidence: the unit, in brackets, behind the name or in a units row;
 /// the words of the name, of the table in src/io/words.h, instruments before it aside; and the
-/// numbers, which go to and fro or only grow. A unit counts more than a word. Columns that stay or
-/// only grow are left out where others go to and fro, with a note where they have as much evidence;
-/// what no unit and no word decides is taken from the columns that are left, if they are as many,
-/// with a note. Several columns with the same evidence, a displacement or force that only grows
-/// while the other goes to and fro, and a register with a sign bit are refused, with the columns.
+/// numbers, which go to and fro or only grow. A unit counts more than a word, and numbers that go
+/// to and fro most; what no unit and no word decides is taken from the columns that are left, if
+/// they are as many, with a note. Several columns with the same evidence, a displacement or force
+/// without a unit that only grows while the other goes to and fro, a coefficient of friction and a
+/// register with a sign bit are refused.
 ///
 /// *Units.* As given; else of the header, where two that differ are an error; else m, N, s, with a
-/// note. An angle and a torque go together: one of the two has the other's unit, rad or N m, where
-/// it names none.
+/// note. An angle and a torque go together.
 ///
-/// *Time.* A number; a stamp since 1970, in s, ms, us or ns, or a time of day, perhaps behind a
-/// date
-/// ("2024-03-05T10:11:12.5"), which count from the first row, with a note. In a further block of
-/// rows a clock may begin anew.
+/// *Time.* A number; or a stamp since 1970, in s, ms, us or ns, or a time of day, perhaps behind a
+/// date ("2024-03-05T10:11:12.5"), which count from the first row, with a note. In a further block
+/// of rows a clock may begin anew.
 ///
 /// *Rows.* A row in which a cell that is used is empty or holds a mark of a missing number is left
 /// out, with a note; more than one in a hundred are an error, unless broken rows are skipped.
 ///
-/// *Covariates.* Those chosen, their numbers as they are; one is not recognised as a normal load
-/// besides. Then up to kMostOtherColumns of the others in their order, called by their header's
-/// name, without its unit, or else by number: of those that hold a number in every row, and not the
-/// same in all.
+/// *Covariates.* Those chosen; then up to kMostOtherColumns of the others in their order, called by
+/// their name without its unit, or else by number: of those that hold a number in every row, and
+/// not the same in all.
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
