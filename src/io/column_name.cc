@@ -1,7 +1,5 @@
 #include "io/column_name.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
@@ -57,7 +55,6 @@ std::vector<std::string_view> WordsOf(std::string_view name) {
       const auto* cut = std::adjacent_find(
           begin, end, [](char one, char next) { return IsSmall(one) && IsCapital(next); });
       if (cut != end) ++cut;
-      if (FindUnit({begin, end})) cut = end;  // "kN"
       words.emplace_back(begin, cut);
       begin = cut;
     }
@@ -153,73 +150,36 @@ std::string WithNarrowLetters(std::string_view text) {
   return utf_to_utf<char>(letters);
 }
 
-/// Takes a unit off behind the last comma or the first slash.
-void TakeUnitBehindAMark(ColumnName& split) {
-  const std::string plain = split.name;
-  for (const std::size_t at : {plain.rfind(','), plain.find('/')}) {
-    if (at == std::string::npos || at == 0) continue;
-    const std::string_view unit = Trimmed(std::string_view(plain).substr(at + 1));
-    if (!IsKnown(unit)) continue;
-    split.unit = unit;
-    split.name = Trimmed(std::string_view(plain).substr(0, at));
-    return;
-  }
-}
-
-/// Returns a name without a part of it, and what separates that from the rest.
-std::string WithoutPart(std::string_view name, std::size_t begin, std::size_t end) {
+/// Takes a unit off the end of a name: any behind a comma or a slash, else one that suits the words
+/// before it.
+void TakeUnitAtEnd(ColumnName& split) {
   constexpr std::string_view kSeparators = " _-.:=@|,;/<{[()]}>";
-  const std::size_t last = name.substr(0, begin).find_last_not_of(kSeparators);
-  const std::size_t next = name.find_first_not_of(kSeparators, end);
-  if (last == name.npos) return std::string(name.substr(std::min(next, name.size())));
-  return std::string(name.substr(0, last + 1)).append(next == name.npos ? "" : name.substr(end));
-}
-
-/// Takes the unit off that is among the words of a name and suits the others.
-void TakeUnitAmongWords(ColumnName& split) {
-  const std::string plain = split.name;
-  const std::vector<std::string_view> words = WordsOf(plain);
-  for (std::size_t k = words.size(); k-- > 0;) {
-    const auto begin_of = [&](std::size_t word) {
-      return static_cast<std::size_t>(words[word].data() - plain.data());
-    };
-    std::size_t begin = begin_of(k);
-    const std::size_t end = begin + words[k].size();
-    std::string word(words[k]);
-    std::optional<Unit> unit = FindUnit(word);
-    const bool is_camel = begin > 0 && IsLetter(plain[begin - 1]);
-    if (!unit && is_camel) {  // "posMm"
-      word.front() =
-          static_cast<char>(IsCapital(word.front()) ? word.front() + 0x20 : word.front());
-      unit = FindUnit(word);
-    }
-    const auto product =
-        k > 0 ? FindUnit(fmt::format("{} {}", words[k - 1], words[k])) : std::nullopt;
-    if (product && product->dimension == Dimension::kTorque) {  // "N_m"
-      unit = product;
-      begin = begin_of(k - 1);
-    }
-    const bool is_last = k + 1 == words.size();
-    const bool is_single = CharactersIn(words[k]) == 1 && begin == begin_of(k);
-    if (!unit || LowerCase(word) == "in" || (is_single && (!is_last || is_camel))) continue;
-    std::string name = WithoutPart(plain, begin, end);
+  constexpr std::string_view kBehind = " _-.:=@|,;/<{[()]}>0123456789";  // "force_kN_1"
+  const std::string plain = split.name.substr(0, split.name.find_last_not_of(kBehind) + 1);
+  for (std::size_t at = plain.find_first_of(kSeparators, 1); at != plain.npos;
+       at = plain.find_first_of(kSeparators, at + 1)) {
+    std::string unit(Trimmed(std::string_view(plain).substr(at + 1)));
+    std::ranges::replace(unit, '_', ' ');  // "torque_N_m"
+    const std::size_t last = plain.find_last_not_of(kSeparators, at);
+    std::string name = plain.substr(0, last + 1);
+    if (!IsKnown(unit) || LowerCase(unit) == "in" || name.empty()) continue;
+    if (name.ends_with(" in")) name.resize(name.size() - 3);
     const NameEvidence evidence = EvidenceOf(name);
+    const auto of = FindUnit(unit);
     // "F_h" is a horizontal force, "F_rad" a radial one; "k_N" is nothing that is known.
-    const bool suits =
-        evidence.word.empty() ? !is_single && is_last : MayHaveRole(unit->dimension, evidence.role);
-    if (name.empty() || !suits) continue;
-    const std::size_t before = std::string_view(plain).substr(0, begin).find_last_not_of(' ');
-    const bool is_range = before != plain.npos && IsDigit(plain[before]);
-    const std::size_t from = is_range ? plain.find_last_not_of("0123456789.", before) + 1 : begin;
-    if (is_range && (from == 0 || !IsLetter(plain[from - 1]))) {
+    const bool suits = evidence.word.empty() ? of && CharactersIn(unit) > 1
+                                             : MayHaveRole(DimensionOf(unit), evidence.role);
+    const bool is_marked = plain[at] == ',' || plain[at] == '/';
+    if (!suits && !is_marked) continue;
+    const std::size_t number = name.find_last_not_of("0123456789.") + 1;
+    if (suits && IsDigit(name.back()) && !IsLetter(name[number - (number > 0 ? 1 : 0)])) {
       // "5 kN" is none; "23.8 N" is in the unit that would be assumed.
-      if (unit->numerator != unit->denominator) split.unit = plain.substr(from, end - from);
+      if (of->numerator != of->denominator) split.unit = plain.substr(number);
       return;
     }
-    if (name.ends_with(" in")) name.resize(name.size() - 3);
-    split.unit = unit->symbol;
+    split.unit = unit;
     // "F_N" is perhaps the normal force.
-    if (LowerCase(name) != "f" || split.unit != "N") split.name = std::move(name);
+    if (LowerCase(name) != "f" || unit != "N") split.name = std::move(name);
     return;
   }
 }
@@ -288,8 +248,7 @@ ColumnName SplitColumnName(std::string_view header) {
     split.unit = unit;
     split.name = std::string(Trimmed(plain.substr(0, open))) + plain.substr(close + 1);
   }
-  if (split.unit.empty()) TakeUnitBehindAMark(split);
-  if (split.unit.empty()) TakeUnitAmongWords(split);
+  if (split.unit.empty()) TakeUnitAtEnd(split);
   RequireUnit(split);
   split.evidence = EvidenceOf(split.name);
   return split;

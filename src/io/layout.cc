@@ -232,11 +232,9 @@ class Reading {
   /// units, the nearest row above with a name for every column; of several the one with most known
   /// words.
   void FindNames() {
-    constexpr std::size_t kFarthest = 100;
-    const std::size_t begin = data_ - std::min(data_, kFarthest);
     std::size_t header = data_;
     std::size_t most = 0;
-    for (std::size_t k = data_; k-- > begin;) {
+    for (std::size_t k = data_; k-- > 0;) {
       const Row& row = rows_[k];
       const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
       if (names_.empty() && may_be_data) break;
@@ -284,11 +282,6 @@ class Reading {
               : "");
     }
     layout_.header.header_line = rows_[header].line;
-    if (header > 0) {
-      layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
-                                                 rows_[header].line, header,
-                                                 header == 1 ? "" : "s"));
-    }
   }
 
   /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.

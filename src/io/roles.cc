@@ -126,18 +126,15 @@ class RoleAssigner {
     const bool finds_force = IsMissing(Role::kForce);
     FindPair();
     if (!asked.sample_rate && IsMissing(Role::kTime)) {
-      TakeFound(Role::kTime, taken_);
+      TakeFound(Role::kTime);
       if (!IsMissing(Role::kTime)) AddNanoseconds();
     }
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
-    std::vector<bool> taken = taken_;
     for (const std::string& covariate : asked.covariates) {
-      taken[names_.Chosen(covariate, Role::kOther)] = true;
+      taken_[names_.Chosen(covariate, Role::kOther)] = true;
     }
-    if (has_load) {
-      TakeFound(Role::kNormalLoad, taken);
-      TakeLoad(taken);
-    }
+    if (has_load) TakeFound(Role::kNormalLoad);
+    if (has_load && IsMissing(Role::kNormalLoad) && !IsMissing(Role::kForce)) TakeLoad();
     TakeLeft();
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement);
@@ -171,24 +168,23 @@ class RoleAssigner {
     }
   }
 
-  void TakeFound(Role role, const std::vector<bool>& taken) {
+  void TakeFound(Role role) {
     if (!IsMissing(role)) return;
-    if (const auto found = names_.Best(role, taken)) return Take(*found, role);
+    if (const auto found = names_.Best(role, taken_)) return Take(*found, role);
     if (!Of(role).given_unit.empty()) ThrowNoColumn(role);
   }
 
   /// Takes a "load" as the normal one beside what is a friction force by its name.
-  void TakeLoad(const std::vector<bool>& taken) {
-    if (!IsMissing(Role::kNormalLoad) || IsMissing(Role::kForce)) return;
+  void TakeLoad() {
     const NameEvidence& force = names_[ColumnOf(Role::kForce)].evidence;
     if (!force.names(Role::kForce) || force.rank > 0) return;
-    for (std::size_t column = 0; column < taken.size(); ++column) {
+    for (std::size_t column = 0; column < taken_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
       const NameEvidence& load = of.evidence;
       const bool is_load = load.names(Role::kForce) && load.rank == 2 && !load.is_angular &&
                            load.other_words == 0 &&
                            (of.unit.empty() || of.dimension == Dimension::kForce);
-      if (!taken[column] && of.is_numeric && is_load) return Take(column, Role::kNormalLoad);
+      if (!taken_[column] && of.is_numeric && is_load) return Take(column, Role::kNormalLoad);
     }
   }
 

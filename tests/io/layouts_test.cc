@@ -143,18 +143,11 @@ Displacement_mm_,Force_kN_ | mm | kN
 Displacement..mm.,Force..N. | mm | N
 Displacement__um_,F_N_ | um | N
 disp.mm,force=kN | mm | kN
+disp_mm1,force_kN_1 | mm | kN
 disp-mm,force:kN | mm | kN
 disp <mm>,force {kN} | mm | kN
 Displacement@mm,Force|kN | mm | kN
-mm_pos,kN force | mm | kN
-pos_mm_filtered,CH1_force_mN_avg | mm | mN
-disp_mm1,force_kN_1 | mm | kN
-dispUm,forceMilliN | um | mN
-DispMM,ForceKN | mm | kN
-Displacement mm (1),Force kN cell 1 | mm | kN
-x_um_raw,F_mN_raw | um | mN
 angle.deg,Torque_N_m_ | deg | N m
-angleRad,torque [lb-in] | rad | lbf in
 Angle (deg),torque N.mm | deg | N mm
 Winkel [rad],M_d [kgf.cm] | rad | kgf cm
 Displacement (in mm),Force (unit: kN) | mm | kN
@@ -164,7 +157,7 @@ LVDT (mils),Load (pound) | mil | lbf
 Temperature deg C [um],Force raw N | um | N
 )names";
 
-TEST(Units, AreFoundAmongTheWordsOfANameAndAssumedWithAMark) {
+TEST(Units, AreFoundAtTheEndOfANameAndAssumedWithAMark) {
   for (const Strings& row : RowsOf(kUnitsInNames)) {
     SCOPED_TRACE(row[0]);
     const RecordFile file = Read(row[0] + "\n1,2\n2,3\n1,2\n");
@@ -172,7 +165,7 @@ TEST(Units, AreFoundAmongTheWordsOfANameAndAssumedWithAMark) {
     EXPECT_EQ(file.force.unit, row[2]);
     EXPECT_FALSE(file.displacement.has_no_unit || file.force.has_no_unit);
   }
-  for (const char* names : {"Dispm,Force", "DispM,ForceN", "x_in,F"}) {
+  for (const char* names : {"Dispm,Force", "posMm,ForceN", "x_um_raw,F_mN_raw", "x_in,F"}) {
     EXPECT_TRUE(Read(names + std::string("\n1,2\n2,3\n1,2\n"), Choose("1", "2")).force.has_no_unit);
   }
 }
@@ -187,7 +180,7 @@ Displacement E-3 [mm],F [N] | 1 | mm E-3
 x [mm],Force*10 | 2 | *10
 Displacement (0.01 mm),F [N] | 1 | 0.01 mm
 LVDT (5 mm),F [N] | 1 | 5 mm
-x [mm],Force 5 kN cell | 2 | 5 kN
+x [mm],Force cell 5 kN | 2 | 5 kN
 x [mm],Force (% FS) | 2 | % FS
 x [mm],Force % | 2 | %
 angle [rad],torque_percent | 2 | percent

@@ -87,7 +87,6 @@ TEST(LoggerFile, MayHaveALongPreambleButNoFooter) {
   const RecordFile file = Read(Preamble(41) + data);
   ASSERT_EQ(file.record.size(), 20U);
   EXPECT_EQ(file.record.force.back(), 38.0);
-  EXPECT_THAT(file.notes, Contains(HasSubstr("41 rows above the header skipped")));
   EXPECT_THAT(Refusal(data + "End of test\n"), StartsWith("loop.csv:22:1: 'End of test'"));
 }
 
