@@ -41,7 +41,7 @@ constexpr std::array kFlags = {
     CycleFlag{"rows_missing",
               "time jumps by a quarter of a cycle or more: what turned there is not seen"},
     CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
-    CycleFlag{"glitches", "spikes, dropouts or held values were left out"},
+    CycleFlag{"glitches", "spikes or dropouts were left out"},
 };
 
 FitOptions OfSteadyCycles(FitOptions options) {

@@ -201,15 +201,14 @@ class InterpolatedChannel {
     return *usual_step_;
   }
 
-  /// Draws a line between the samples about [begin, end), not all; a level one at the record's
-  /// ends.
+  /// Draws a line between the samples about [begin, end), which are inside the record.
   void LeaveOut(std::size_t begin, std::size_t end) {
     if (glitches_.empty()) {
       glitches_.assign(size(), false);
       interpolated_.assign(values_.begin(), values_.end());
     }
-    const double last = interpolated_[end < size() ? end : begin - 1];
-    const double first = begin > 0 ? interpolated_[begin - 1] : last;
+    const double first = interpolated_[begin - 1];
+    const double last = interpolated_[end];
     const auto steps = static_cast<double>(end - begin + 1);
     for (std::size_t i = begin; i < end; ++i) {
       glitches_[i] = true;
@@ -231,56 +230,38 @@ class InterpolatedChannel {
   std::optional<double> usual_step_;
 };
 
-/// Returns how far 0 lies outside the range of two values.
-double OutsideOf(double one, double other) {
-  return std::max({std::min(one, other), -std::max(one, other), 0.0});
-}
-
 /// Successive samples: [begin, end).
 struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
-
-  [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-/// Returns the samples that read 0 and 0 away from their neighbours.
+/// Returns the samples inside the record that read 0 and 0, where some lie off their neighbours: so
+/// do the others then, wherever the loop was.
 std::vector<Run> FindDropouts(const RecordView& record) {
-  const Readings x = record.displacement;
-  const auto is_zero = [&](std::size_t i) { return x[i] == 0 && record.force[i] == 0; };
+  const auto is_zero = [&](std::size_t i) {
+    return record.displacement[i] == 0 && record.force[i] == 0;
+  };
   std::vector<Run> runs;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (!is_zero(i)) continue;
     if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
     runs.back().end = i + 1;
   }
-  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
-  const auto usual_step = [&](Readings values) {
+  std::erase_if(runs, [&](const Run& run) { return run.begin == 0 || run.end == record.size(); });
+  if (runs.empty()) return runs;
+  const auto lies_off = [&](Readings values) {
     std::vector<double> others;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_zero(i)) others.push_back(values[i]);
     }
-    return UsualStep(others);
+    const double within = GlitchRules::kDropout * UsualStep(others);
+    return std::ranges::any_of(runs, [&](const Run& run) {
+      const auto [low, high] = std::minmax(values[run.begin - 1], values[run.end]);
+      return std::max(low, -high) > within;
+    });
   };
-  const double step_of_x = usual_step(x);
-  const double step_of_force = usual_step(record.force);
-  const auto lies_off = [&](const Run& run) {
-    if (!run.IsInside(record.size())) {
-      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) >
-             GlitchRules::kEndDropout * step_of_x;
-    }
-    const auto outside = [&](Readings values) {
-      return OutsideOf(values[run.begin - 1], values[run.end]);
-    };
-    return outside(x) > GlitchRules::kDropout * step_of_x ||
-           outside(record.force) > GlitchRules::kDropout * step_of_force;
-  };
-  // If one run inside the record is a dropout, so are the others, wherever the loop was.
-  const bool any = std::ranges::any_of(
-      runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
-  std::erase_if(runs, [&](const Run& run) {
-    return !(any && run.IsInside(record.size())) && !lies_off(run);
-  });
+  if (!lies_off(record.displacement) && !lies_off(record.force)) runs.clear();
   return runs;
 }
 
@@ -331,78 +312,20 @@ bool FindSpikes(InterpolatedChannel& channel) {
   return found;
 }
 
-double LargestStep(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
-  double largest = 0.0;
-  const std::size_t last = std::min(end, channel.size());
-  for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
-    largest = std::max(largest, channel.Step(i));
-  }
-  return largest;
-}
-
-/// True if half of the samples of [begin, end) have another value than the one before them.
-bool Moves(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
-  std::size_t moves = 0;
-  for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
-  return 2 * moves >= end - begin;
-}
-
-/// True if the column jumps at the end of the run [begin, end) of equal values.
-bool JumpsAtTheEnd(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
-  const std::size_t length = end - begin;
-  const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
-                                LargestStep(channel, end + 1, end + 1 + length));
-  return channel.Step(end) > GlitchRules::kHeldJump * about;
-}
-
-/// True if the column continues in the direction of the last samples of [begin, end).
-bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
-  const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
-  return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >
-         0;
-}
-
-/// Finds where one channel is held at a value on its way while the other moves.
-void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other) {
-  std::size_t end = 0;
-  for (std::size_t begin = 0; begin < channel.size(); begin = end) {
-    const Readings values = channel.values();
-    for (end = begin + 1; end < values.size() && values[end] == values[begin];) ++end;
-    if (end - begin < GlitchRules::kShortestHeld || end == values.size()) continue;
-    if (Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end) &&
-        JumpsAtTheEnd(channel, begin, end) && GoesOn(other.values(), begin, end) &&
-        channel.Step(end) > GlitchRules::kHeldJump * channel.usual_step()) {
-      channel.LeaveOut(begin + 1, end);  // the first reading is a good one
-    }
-  }
-}
-
 }  // namespace
 
 Interpolated FindAndInterpolate(const RecordView& record) {
   constexpr int kPasses = 3;
-  InterpolatedChannel displacement(record.displacement);
-  InterpolatedChannel force(record.force);
-  // A finder that marks more than `most` of the samples of a channel has found no glitches: its
-  // marks are taken back.
-  const auto take = [](InterpolatedChannel& channel, const auto& find) {
-    InterpolatedChannel without = channel;
-    find(channel);
-    const double found = channel.CountGlitches() - without.CountGlitches();
-    if (found > GlitchRules::kMost * static_cast<double>(channel.size()))
-      channel = std::move(without);
-  };
   const std::vector<Run> dropouts = FindDropouts(record);
-  for (InterpolatedChannel* channel : {&displacement, &force}) {
-    take(*channel, [&](auto& in) {
-      for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end);
-    });
-    take(*channel, [&](auto& in) {
-      for (int pass = 0; pass < kPasses && FindSpikes(in); ++pass) continue;
-    });
-  }
-  take(displacement, [&](auto& in) { FindHeld(in, force); });
-  take(force, [&](auto& in) { FindHeld(in, displacement); });
+  const auto interpolated = [&](Readings values) {
+    InterpolatedChannel channel(values);
+    for (const Run& run : dropouts) channel.LeaveOut(run.begin, run.end);
+    for (int pass = 0; pass < kPasses && FindSpikes(channel); ++pass) continue;
+    const double most = GlitchRules::kMost * static_cast<double>(values.size());
+    return channel.CountGlitches() > most ? InterpolatedChannel(values) : channel;
+  };
+  InterpolatedChannel displacement = interpolated(record.displacement);
+  InterpolatedChannel force = interpolated(record.force);
   std::vector<bool> glitches = displacement.glitches();
   glitches.resize(std::max(glitches.size(), force.glitches().size()));
   for (std::size_t i = 0; i < force.glitches().size(); ++i) {

@@ -42,12 +42,6 @@ struct GlitchRules {
   static constexpr std::size_t kAbout = 12;
   /// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
   static constexpr double kDropout = 2.0;
-  /// [usual steps of the displacement] The same at an end: a record may begin at 0 and 0.
-  static constexpr double kEndDropout = 4.0;
-  /// [samples] Fewer equal readings are common where a file has few digits.
-  static constexpr std::size_t kShortestHeld = 5;
-  /// [steps about it and of the record] Least jump from a held value to the next.
-  static constexpr double kHeldJump = 3.0;
   /// [of the samples] Largest fraction that may be glitches; more of them are the record.
   static constexpr double kMost = 0.25;
 };

@@ -66,14 +66,10 @@ struct Interpolated {
 ///   than three times the steps about it (the third largest of 24) and of the record (of ten steps
 ///   nine are smaller). So corners, turning points of few samples a cycle, and square pulses that
 ///   come again are none.
-/// - A dropout reads exactly 0 and 0, outside its neighbours' range by more than two such steps in
-///   either channel; where one does, all inside the record that read so. At an end of the record,
-///   which may begin at rest, it is off by more than four such steps of the displacement.
-/// - A value is held where five or more samples of one channel are the same while the other moves,
-///   and it then jumps, alone, by more than three times the steps about it. So rest, an encoder's
-///   steps, and the plateau of a law that slips at a constant force are none.
-/// A kind that makes up more than a quarter of a channel is no glitch of it. In the first and last
-/// two samples no spike is found.
+/// - A dropout reads exactly 0 and 0, inside the record and outside its neighbours' range by more
+///   than two such steps of the record in either channel; where one does, all inside that read so.
+/// Glitches that make up more than a quarter of a channel are none. In the first and last two
+/// samples no spike is found.
 ///
 /// @param record  valid
 /// Cost: linear in the samples.

@@ -146,7 +146,7 @@ std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records
 /// @throws InvalidArgument naming the option, its value and the rule
 void Validate(const PreparationOptions& options);
 
-/// Finds glitches - spikes, dropouts and held values, which do not count and make no history -,
+/// Finds glitches - spikes and dropouts, which do not count and make no history -,
 /// reversals, sign of force, smoothing and the mask of samples that count: what
 /// depends on no model.
 /// @param records  not empty; their memory must outlive the result
