@@ -118,12 +118,6 @@ std::vector<TermCandidate> TermCandidates(std::span<const RecordView> records,
   return candidates;
 }
 
-/// True if a gap was measured without a model in every record.
-bool HasGap(const FitResult& law) {
-  return std::ranges::all_of(
-      law.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
-}
-
 /// True if hardly more than white noise is left.
 bool IsNearlyWhite(const FitResult& fit, const Thresholds& thresholds) {
   return fit.rms * fit.rms <= thresholds.nearly_white * WhiteVariance(fit);
@@ -464,12 +458,6 @@ TermSelection Selection::Run(const FitOptions& options) {
   }
   const FitResult law = result_.fit;
   if (!Begin(options, law)) return std::move(result_);
-  // A gap that was measured without a model is tried first: no linear step from a contact that is
-  // too soft for the want of a gap predicts it.
-  if (HasGap(law)) {
-    const std::size_t gap = *Find("backlash");
-    Add(gap, FitWith(candidates_[gap].choice, nullptr));
-  }
   while (Round()) {
   }
   if (!result_.added.empty()) FitLast(law);
@@ -529,16 +517,13 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   std::erase_if(tried, [&](const Gain& gain) {
     return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
   });
-  // A linear step does not predict the gain of a gap, nor that of a column whose force the law has
-  // taken up: these two are fitted first.
-  const auto try_first = [&](std::size_t c) {
-    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == c; });
-    tried.insert(tried.begin(), {c, {}});
-  };
-  if (HasGap(law)) try_first(*Find("backlash"));
+  // A linear step does not predict the gain of a column whose force the law has taken up: it is
+  // fitted first.
   const auto column = std::ranges::find_if(candidates_, FollowsForce);
   if (column != candidates_.end()) {
-    try_first(static_cast<std::size_t>(column - candidates_.begin()));
+    const auto c = static_cast<std::size_t>(column - candidates_.begin());
+    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == c; });
+    tried.insert(tried.begin(), {c, {}});
   }
   tried.resize(std::min(tried.size(), most));
   std::multimap<double, std::string, std::greater<>> by_gain;

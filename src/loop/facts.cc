@@ -144,89 +144,6 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   return facts;
 }
 
-/// Forces [N] from the centre of the loop, in half gaps, that strokes are looked at.
-constexpr std::size_t kLevels = 17;
-constexpr double kLevelStep = 0.1;
-constexpr double kLowestLevel = -0.8;
-
-/// Travel [m] of a stroke until its force comes to each level; empty where it does not.
-using Passage = std::array<double, kLevels>;
-
-std::optional<Passage> PassageOf(const Stroke& stroke, double centre, double half_gap) {
-  const double sense = stroke.rises() ? 1.0 : -1.0;
-  Passage passage{};
-  std::size_t level = 0;
-  for (std::size_t i = 0; i < stroke.force.size() && level < kLevels; ++i) {
-    const double reached = sense * (stroke.force[i] - centre) / half_gap;
-    while (level < kLevels && reached >= kLowestLevel + kLevelStep * static_cast<double>(level)) {
-      passage[level++] = std::abs(stroke.displacement[i] - stroke.displacement.front());
-    }
-  }
-  if (level < kLevels) return std::nullopt;
-  return passage;
-}
-
-/// Returns the width [m] of a gap between the levels k and k + 2: the travel from a level before to
-/// one after, less what the slopes beyond these take.
-double GapAt(const Passage& passage, std::size_t k, double slopes) {
-  return passage[k + 3] - passage[k - 1] - 4 * slopes / 2;
-}
-
-/// Returns the width [m] of the segment where the force of a direction stands still; 0 where it
-/// does not.
-/// @param passages  of strokes of one direction
-double FlatOf(std::span<const Passage> passages) {
-  constexpr double kSofter = 2.0;    // than what is before and after
-  constexpr double kScatter = 0.25;  // of the width, between strokes
-  if (passages.size() < 2) return 0.0;
-  Passage typical{};
-  for (std::size_t k = 0; k < kLevels; ++k) {
-    std::vector<double> travels;
-    for (const Passage& passage : passages) travels.push_back(passage[k]);
-    typical[k] = Median(travels);
-  }
-  double flat = 0.0;
-  std::size_t level = 0;  // at which it begins
-  double slopes = 0.0;    // before and after it
-  // Over three levels, a level apart.
-  for (std::size_t k = 4; k + 6 < kLevels; ++k) {
-    const double before = (typical[k - 1] - typical[k - 4]) / 3;
-    const double after = (typical[k + 6] - typical[k + 3]) / 3;
-    const double here = (typical[k + 2] - typical[k]) / 2;
-    const double width = GapAt(typical, k, before + after);
-    const bool is_softer = here > kSofter * std::max(before, after) && before > 0 && after > 0;
-    if (!is_softer || width <= flat) continue;
-    flat = width;
-    level = k;
-    slopes = before + after;
-  }
-  const bool scatters = flat > 0 && std::ranges::any_of(passages, [&](const Passage& passage) {
-                          return std::abs(GapAt(passage, level, slopes) - flat) > kScatter * flat;
-                        });
-  return scatters ? 0.0 : flat;
-}
-
-std::optional<double> FindBacklash(std::span<const Cycle> cycles, double centre, double half_gap,
-                                   double amplitude) {
-  // Narrower ones are within what a few samples, or the digits of the force, make of a steep
-  // branch.
-  constexpr double kLeastGap = 0.03;
-  std::vector<Passage> up;
-  std::vector<Passage> down;
-  for (const Cycle& cycle : cycles) {
-    const auto rising = PassageOf(cycle.rising(), centre, half_gap);
-    const auto falling = PassageOf(cycle.falling(), centre, half_gap);
-    if (!rising || !falling) return std::nullopt;
-    up.push_back(*rising);
-    down.push_back(*falling);
-  }
-  const double rising = FlatOf(up);
-  const double falling = FlatOf(down);
-  const double width = rising / 2 + falling / 2;
-  if (rising == 0 || falling == 0 || width < kLeastGap * amplitude) return std::nullopt;
-  return width;
-}
-
 double StandardDeviation(Column values) {
   const double mean = Mean(values);
   double squares = 0.0;
@@ -289,10 +206,6 @@ LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> 
   const std::vector<double> gaps = values_of(&CycleFacts::half_gap);
   if (!gaps.empty()) facts.half_gap = Mean(gaps);
   if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
-  if (facts.half_gap && *facts.half_gap > 0) {
-    const double centre = Mean(values_of(&CycleFacts::centre_force));
-    facts.backlash = FindBacklash(steady, centre, *facts.half_gap, facts.amplitude);
-  }
   return facts;
 }
 

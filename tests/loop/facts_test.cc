@@ -116,44 +116,6 @@ TEST(Slides, BesideASpringThatRaisesThePeakForce) {
   EXPECT_FALSE(Slides(FactsOf(record)));
 }
 
-/// The displacement before a gap that is on the side of the force, over a twentieth of Tc.
-/// @param growth  of the gap in every other cycle
-Record BehindAGap(const Parallelogram& loop, double gap, double growth = 0.0) {
-  Record record = MakeRecord(loop);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const double wider = i / (2 * kStroke) % 2 == 0 ? 1 : 1 + growth;
-    const double side = (record.force[i] - loop.offset) / (0.05 * loop.slip_force);
-    record.displacement[i] += wider * gap / 2 * std::clamp(side, -1.0, 1.0);
-  }
-  return record;
-}
-
-TEST(Backlash, IsTheTravelOverWhichTheForceStandsStill) {
-  constexpr double kGap = 0.2;  // [m]
-  Parallelogram loop;
-  loop.offset = 0.3;
-  const LoopFacts facts = FactsOf(BehindAGap(loop, kGap));
-  ASSERT_TRUE(facts.backlash);
-  // A level is passed up to a sample late: two ends, each of 2X/400.
-  EXPECT_NEAR(*facts.backlash, kGap, 2 * 2.0 / kStroke);
-}
-
-TEST(Backlash, IsNoneWhoseWidthChangesFromStrokeToStroke) {
-  EXPECT_TRUE(FactsOf(BehindAGap({}, 0.1)).backlash);
-  EXPECT_FALSE(FactsOf(BehindAGap({}, 0.1, 0.9)).backlash) << "a third to either side of the mean";
-  EXPECT_FALSE(FactsOf(BehindAGap({}, 0.02)).backlash) << "less than 3 % of the amplitude";
-}
-
-TEST(Backlash, IsNoneWhereOneSideIsSofterThanTheOther) {
-  // From the zero of the force on four times as soft: softer than before it, and as soft as after.
-  const Parallelogram loop;
-  Record record = MakeRecord(loop);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.displacement[i] += 3 * std::max(record.force[i] - loop.offset, 0.0) / loop.stiffness;
-  }
-  EXPECT_FALSE(FactsOf(record).backlash);
-}
-
 TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlipWhateverTheSignOfTheForce) {
   for (const int sense : {1, -1}) {
     Record record = MakeRecord({.centre = -11.0, .offset = 7.0, .normal_load = 5.0});

@@ -50,11 +50,6 @@ struct LoopFacts {
   /// D_{11−j})/2. Zero of a loop that has the symmetry of a contact; a slope of both strokes and
   /// offsets do not enter.
   std::optional<double> asymmetry;
-  /// Width [m] of a gap, mean over the directions, that the motion takes up after each reversal
-  /// while the force rises at less than half the slope before and after it, between −0.4 and 0.4
-  /// half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 % of
-  /// the amplitude or more. No contact's branch does so: it only softens.
-  std::optional<double> backlash;
 };
 
 /// True if a measured loop slides over most of its stroke, so that its half gap is the slip
