@@ -107,13 +107,6 @@ struct TestPartRules {
   /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
   /// growing amplitude and a nested loop are inside.
   static constexpr double kTravel = 0.25;
-  /// [of a travel] Reach of the means of its force, and least way back that is more than noise.
-  static constexpr double kNear = 0.05;
-  /// [of the first third's rise] Largest change of force in the last third of a first loading.
-  static constexpr double kLevel = 0.2;
-  /// [of its rise] Largest range of the force of strokes that do not slip: of those that do it is
-  /// 2, or 1 where the first loading began from slip the other way.
-  static constexpr double kSticks = 0.9;
   /// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
   static constexpr double kSmallPart = 0.125;
   /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.

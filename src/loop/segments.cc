@@ -271,34 +271,9 @@ void CutAfter(std::string_view reason, std::size_t last, TestPart& test) {
   test.last = last;
 }
 
-/// True for samples up to one that move one way until the force levels off, where the
-/// force of the strokes that follow spans less: a first loading, which alone slips.
-bool IsFirstLoading(std::span<const double> displacement, std::span<const double> force,
-                    std::size_t last) {
-  const double from = displacement.front();
-  const double way = displacement[last] - from;
-  std::array<double, 4> forces{};  // at thirds of the way
-  for (std::size_t third = 0; third < forces.size(); ++third) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t i = 0; i <= last; ++i) {
-      const double part = (displacement[i] - from) / way;
-      if (part < -TestPartRules::kNear || part > 1 + TestPartRules::kNear) return false;
-      if (std::abs(part - static_cast<double>(third) / 3) > TestPartRules::kNear) continue;
-      sum += force[i];
-      ++count;
-    }
-    forces[third] = sum / count;
-  }
-  const auto [least, greatest] = std::ranges::minmax(force.subspan(last));
-  return std::abs(forces[3] - forces[2]) <
-             TestPartRules::kLevel * std::abs(forces[1] - forces[0]) &&
-         greatest - least < TestPartRules::kSticks * std::abs(forces[3] - forces[0]);
-}
-
-void LeaveOutTravel(const RecordView& record, TestPart& test) {
+void LeaveOutTravel(std::span<const double> all, TestPart& test) {
   const std::size_t from = test.first;
-  const auto displacement = record.displacement.subspan(from, test.last - from);
+  const std::span<const double> displacement = all.subspan(from, test.last - from);
   const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement);
   if (!strokes) return;
   const double travel = TestPartRules::kTravel * strokes->range;
@@ -309,10 +284,7 @@ void LeaveOutTravel(const RecordView& record, TestPart& test) {
   const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
   const auto before = Outside(displacement, std::ranges::subrange(begin, points.rend()), *strokes,
                               travel, points.size());
-  const auto force = record.force.subspan(from, test.last - from);
-  if (before && !IsFirstLoading(displacement, force, *before)) {
-    CutBefore(kTravel, from + *before, test);
-  }
+  if (before) CutBefore(kTravel, from + *before, test);
   const auto after = Outside(displacement, std::ranges::subrange(turn(strokes->last), points.end()),
                              *strokes, travel, points.size());
   if (after) CutAfter(kTravel, from + *after + 1, test);
@@ -345,7 +317,7 @@ TestPart FindTestPart(const RecordView& record) {
     CutBefore(kLoadRamp, settled->first, test);
     CutAfter(kLoadRamp, settled->last, test);
   }
-  LeaveOutTravel(record, test);
+  LeaveOutTravel(record.displacement, test);
   LeaveOutRests(record.displacement, test);
   std::ranges::sort(test.left_out, {}, &LeftOut::first);
   return test;

@@ -116,20 +116,6 @@ TEST(TestPart, LeavesOutATravelBeforeOrAfterOfAnyLengthAndDirection) {
   }
 }
 
-TEST(TestPart, KeepsAFirstLoadingThatAloneSlips) {
-  const auto record = [](double far) {
-    std::vector<double> places = Way(0.0, far, 150);
-    const std::vector<double> sine = Sine(3.25);  // from its first crest on
-    for (std::size_t i = kCycle / 4; i < sine.size(); ++i) {
-      places.push_back(far + 0.2 * std::copysign(1.0, far) * (sine[i] - kReach));
-    }
-    return WithForce(places);
-  };
-  EXPECT_TRUE(IsWhole(record(2 * kReach)));
-  EXPECT_TRUE(IsWhole(record(-2 * kReach)));
-  EXPECT_FALSE(IsWhole(record(0.7 * kReach))) << "its force does not level off";
-}
-
 TEST(TestPart, LeavesOutTheFallOfASpecimenThatBreaks) {
   std::vector<double> cycles =
       Sine(30, [](double cycle) { return cycle < 27 ? 1.0 : 1 + (cycle - 27) * (cycle - 27); });
