@@ -14,7 +14,6 @@
 
 #include "cli/command.h"
 #include "core/nearest_name.h"
-#include "core/platform.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {
@@ -224,7 +223,7 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   } catch (const std::length_error&) {  // more elements than any memory holds
     return refuse("more is asked for than memory can hold");
   } catch (const std::bad_alloc&) {
-    return refuse(OutOfMemoryText() + ": ask for less, or allow more");
+    return refuse("memory ran out: ask for less, or allow more");
   } catch (const std::system_error& error) {  // no thread or no directory for temporary files
     return refuse("the system refuses: " + OneLine(error.what()));
   } catch (const std::exception& error) {

@@ -1,33 +1,23 @@
 #include "core/platform.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <spawn.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <limits>
 #include <memory>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
-#ifdef __APPLE__
-#include <crt_externs.h>
-#define environ (*_NSGetEnviron())  // which a shared library has not itself
-#else
 extern char** environ;
-#endif
 
 namespace mindahl {
 
@@ -57,42 +47,6 @@ void IgnoreFileSizeSignal() { std::signal(SIGXFSZ, SIG_IGN); }
 
 int ProcessNumber() { return ::getpid(); }
 
-std::uintmax_t MemoryOfProcess() {
-  std::uintmax_t least = std::numeric_limits<std::uintmax_t>::max();
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long page = ::sysconf(_SC_PAGESIZE);
-  if (pages > 0 && page > 0) {
-    least = static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
-  }
-  rlimit limit{};
-  const bool is_limited = ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  if (is_limited) least = std::min<std::uintmax_t>(least, limit.rlim_cur);
-  std::uintmax_t of_group = 0;  // no number where the file says "max"
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> of_group) least = std::min(least, of_group);
-  return least;
-}
-
-std::string OutOfMemoryText() {
-#ifdef __APPLE__
-  constexpr std::uintmax_t kUnit = 1;  // [bytes]
-#else
-  constexpr std::uintmax_t kUnit = 1024;
-#endif
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return fmt::format("memory ran out: the process had {} and may have {}",
-                     BytesInWords(static_cast<std::uintmax_t>(usage.ru_maxrss) * kUnit),
-                     BytesInWords(MemoryOfProcess()));
-}
-
-std::string BytesInWords(std::uintmax_t bytes) {
-  constexpr double kMegabyte = 1e6;
-  constexpr double kGigabyte = 1e9;
-  const auto size = static_cast<double>(bytes);
-  return size < kGigabyte ? fmt::format("{:.3g} MB", size / kMegabyte)
-                          : fmt::format("{:.3g} GB", size / kGigabyte);
-}
-
 int OpenFile(const std::string& name, Opening opening, int& file) {
   const int flags = opening == Opening::kNew        ? O_CREAT | O_EXCL
                     : opening == Opening::kExisting ? O_APPEND
@@ -117,14 +71,6 @@ int EndFileAt(int file, std::uintmax_t size) {
 }
 
 int WriteToDisk(int file) { return ::fsync(file) != 0 && errno != EINVAL ? errno : 0; }
-
-int WriteDirectoryToDisk(const std::string& name) {
-  const int directory = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return errno == EACCES ? 0 : errno;
-  const int error = WriteToDisk(directory);
-  ::close(directory);
-  return error;
-}
 
 int CloseFile(int file) { return ::close(file) != 0 ? errno : 0; }
 

@@ -24,18 +24,6 @@ void KeepFreedMemory();
 void IgnoreFileSizeSignal();
 int ProcessNumber();
 
-/// Returns the bytes that this process may have: the least of the machine's memory, the limit of
-/// its address space (ulimit -v) and that of its control group (cgroup v2). What others use of the
-/// machine's is not taken off.
-std::uintmax_t MemoryOfProcess();
-
-/// Returns the message for exhausted memory: how much the process had, and may have.
-///   "memory ran out: the process had 612 MB and may have 650 MB"
-std::string OutOfMemoryText();
-
-/// Returns "1.2 GB", "650 MB", in powers of 1000.
-std::string BytesInWords(std::uintmax_t bytes);
-
 enum class Opening {
   kNew,       ///< fails where the file exists
   kExisting,  ///< appends to what exists
@@ -47,11 +35,9 @@ int OpenFile(const std::string& name, Opening opening, int& file);
 int WriteFile(int file, std::string_view content);
 /// Ends the file at a size, after which the next write goes.
 int EndFileAt(int file, std::uintmax_t size);
-/// Waits until a file, or the directory of that name, is on the disk, so that it survives a loss of
-/// power. A file system that has no such request, and a directory that may not be read, are left
-/// to themselves.
+/// Waits until a file is on the disk, so that it survives a loss of power; a file system that has
+/// no such request is left to itself.
 int WriteToDisk(int file);
-int WriteDirectoryToDisk(const std::string& name);
 int CloseFile(int file);
 int CopyPermissions(const std::string& from, int file);
 

@@ -19,12 +19,6 @@ void RequireWritten(const std::filesystem::path& path, int error) {
   if (error != 0) Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
 }
 
-/// Waits until the name of a file is on the disk.
-int WriteNameToDisk(const std::filesystem::path& file) {
-  const std::filesystem::path parent = file.parent_path();
-  return WriteDirectoryToDisk(parent.empty() ? "." : parent.string());
-}
-
 /// Returns where a file is written before it is renamed.
 std::string TemporaryNameOf(const std::filesystem::path& file) {
   static std::atomic<unsigned> counter = 0;
@@ -57,9 +51,7 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   // A full disk may show only here.
   const int closed = file >= 0 ? CloseFile(file) : 0;
   if (fault == 0) fault = closed;
-  if (fault == 0 && replaces) {
-    fault = std::rename(name.c_str(), target.c_str()) == 0 ? WriteNameToDisk(target) : errno;
-  }
+  if (fault == 0 && replaces && std::rename(name.c_str(), target.c_str()) != 0) fault = errno;
   if (fault != 0 && replaces) static_cast<void>(std::remove(name.c_str()));
   RequireWritten(path, fault);
 }
@@ -86,7 +78,6 @@ void AppendedFile::Append(std::string_view block) {
 void AppendedFile::Finish() {
   RequireWritten(path_, WriteToDisk(file_));
   RequireWritten(path_, CloseFile(std::exchange(file_, -1)));
-  RequireWritten(path_, WriteNameToDisk(path_));
 }
 
 }  // namespace mindahl::io

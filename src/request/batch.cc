@@ -16,7 +16,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/platform.h"
 #include "core/probability.h"
 #include "io/source.h"
 #include "mindahl/core/error.h"
@@ -244,7 +243,7 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
   } catch (const InvalidArgument& error) {
     fault = fmt::format("{}: {}", name, error.what());
   } catch (const std::bad_alloc&) {
-    fault = fmt::format("{}: {}", name, OutOfMemoryText());
+    fault = name + ": memory ran out";
   }
   // A page that cannot be written, too, leaves a file that is not done.
   entry.done = entry.done && fault.empty();
