@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/from_chars.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"

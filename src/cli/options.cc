@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "cli/command.h"
-#include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "core/text.h"
 #include "mindahl/core/units.h"

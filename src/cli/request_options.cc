@@ -4,7 +4,6 @@
 #include <map>
 
 #include "cli/command.h"
-#include "core/from_chars.h"
 #include "core/text.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <numbers>
 
-#include "core/from_chars.h"
 #include "core/text.h"
 
 namespace mindahl {
@@ -169,7 +169,7 @@ std::size_t BeginOfUnit(std::string_view text) {
   double value = 0.0;
   std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
   if (begin < text.size() && text[begin] == '+') ++begin;
-  const auto [stop, error] = FromChars(text.data() + begin, text.data() + text.size(), value);
+  const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + text.size(), value);
   if (error != std::errc()) return text.size();
   return static_cast<std::size_t>(stop - text.data());
 }

@@ -128,7 +128,7 @@ Cell ReadCell(std::string_view text, char delimiter) {
   const char* const end = plain.data() + plain.size();
   double magnitude = 0.0;
   // NOLINTNEXTLINE(bugprone-suspicious-stringview-data-usage): the end is given
-  const auto [stop, error] = FromChars(plain.data(), end, magnitude);
+  const auto [stop, error] = std::from_chars(plain.data(), end, magnitude);
   // from_chars does not say on which side a number is out of range; only a negative exponent can
   // make one too small.
   const bool is_beyond = error == std::errc::result_out_of_range;

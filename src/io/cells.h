@@ -1,10 +1,10 @@
 #pragma once
 
+#include <charconv>
 #include <limits>
 #include <string>
 #include <string_view>
 
-#include "core/from_chars.h"
 #include "core/text.h"
 
 namespace mindahl::io {
@@ -60,7 +60,7 @@ class CellCursor {
     if (digits != end_ && *digits == '-') ++digits;
     if (digits != end_ && *digits == '.') ++digits;
     if (digits == end_ || *digits < '0' || *digits > '9') return {};  // nor "nan"
-    const auto [stop, error] = FromChars(begin, end_, value);
+    const auto [stop, error] = std::from_chars(begin, end_, value);
     const char* const after = delimiter_ == kBlanks ? stop : SkipBlanks(stop);
     if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return {};
     GoBehind(after);

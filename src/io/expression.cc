@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <utility>
 
-#include "core/from_chars.h"
+#include "core/text.h"
 #include "core/nearest_name.h"
 #include "io/cells.h"
 #include "io/roles.h"
@@ -57,7 +58,7 @@ Quantity ReadSum(std::string_view rest, const ColumnNames& names, Role role,
     std::optional<std::size_t> column;
     for (;; take(1)) {
       double number = 0.0;
-      const auto [stop, error] = FromChars(rest.data(), rest.data() + rest.size(), number);
+      const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
       auto size = static_cast<std::size_t>(stop - rest.data());
       const std::string_view after = Trimmed(rest.substr(size));
       const bool ends = after.empty() || kOperators.find(after.front()) != after.npos;
