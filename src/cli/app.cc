@@ -13,7 +13,6 @@
 #include <system_error>
 
 #include "cli/command.h"
-#include "core/nearest_name.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {
@@ -32,15 +31,6 @@ constexpr std::array kCommands = {
 
 bool IsCommand(std::string_view name) {
   return std::ranges::find(kCommands, name, &CommandRow::name) != kCommands.end();
-}
-
-/// Returns the long names of options, behind dashes or, as keys of a configuration, without.
-std::vector<std::string> NamesOfOptions(const CLI::App& command, const std::string& dashes) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back(dashes + name);
-  }
-  return names;
 }
 
 /// TOML whose keys belong to the command being run, with or without its name as a section; the
@@ -87,9 +77,9 @@ class CommandConfig : public CLI::ConfigTOML {
       if (command.get_option_no_throw("--" + name) == nullptr) {
         Refuse(
             key.source(),
-            fmt::format("'{0}.{1}' is no option of {0}{2} keys are those of {0} --help without the "
+            fmt::format("'{0}.{1}' is no option of {0}: keys are those of {0} --help without the "
                         "dashes, in a section named after a command or in none",
-                        running, name, DidYouMean(name, NamesOfOptions(command, ""))));
+                        running, name));
       }
       CLI::ConfigItem item{{running}, name, {}};
       if (const toml::array* array = node.as_array()) {
@@ -190,10 +180,8 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   // CLI11 only says that a command is missing.
   if (argc > 1 && !first.starts_with('-') && !IsCommand(first)) {
     const auto names = NamesOf(kCommands, &CommandRow::name);
-    const std::vector<std::string> words(names.begin(), names.end());
-    err << fmt::format(
-        "mindahl: there is no command '{}'{} must be one of {}; see mindahl --help\n",
-        OneLine(std::string(first)), DidYouMean(first, words), fmt::join(names, ", "));
+    err << fmt::format("mindahl: there is no command '{}': must be one of {}; see mindahl --help\n",
+                       OneLine(std::string(first)), fmt::join(names, ", "));
     return kBadInput;
   }
   const auto refuse = [&](std::string_view why) {
@@ -208,12 +196,7 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
     return Print(results.view(), CommandName(app), status, out, err);
   } catch (const CLI::ParseError& error) {
     const auto unknown = UnknownOption(app);
-    const auto running = app.get_subcommands();
-    std::vector<std::string> names;
-    if (!running.empty()) names = NamesOfOptions(*running.front(), "--");
-    std::ranges::move(NamesOfOptions(app, "--"), std::back_inserter(names));
-    const std::string fault = unknown ? fmt::format("there is no option '{}'{}", OneLine(*unknown),
-                                                    DidYouMean(*unknown, names))
+    const std::string fault = unknown ? fmt::format("there is no option '{}':", OneLine(*unknown))
                                       : OneLine(error.what()) + ";";
     return refuse(fmt::format("{} see {} --help", fault, CommandName(app)));
   } catch (const InputError& error) {

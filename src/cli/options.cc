@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cli/command.h"
-#include "core/nearest_name.h"
+#include "core/refuse.h"
 #include "core/text.h"
 #include "mindahl/core/units.h"
 

@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "cli/command.h"
-#include "core/nearest_name.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/terms.h"
@@ -151,12 +150,10 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
           text);
     }
     if (identification::FindTerm(name) == nullptr) {
-      std::vector<std::string> names;
-      for (const auto& term : identification::Terms()) names.emplace_back(term.name);
       Refuse(
-          "--want: '{}' is no parameter{} must be sigma, alpha, slip_force "
+          "--want: '{}' is no parameter: must be sigma, alpha, slip_force "
           "or a term that --with names",
-          name, DidYouMean(name, names));
+          name);
     }
     if (!wanted.emplace(name, Precision{*precision, text.ends_with('%')}).second) {
       Refuse("--want: {} is given twice: give it once", name);

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "core/nearest_name.h"
+#include "core/refuse.h"
 
 namespace mindahl {
 
@@ -41,8 +40,7 @@ void RequireSameSize(std::string_view first, std::size_t first_size, std::string
 void RequireOneOf(std::string_view option, std::string_view word,
                   std::span<const std::string_view> words) {
   if (std::ranges::find(words, word) != words.end()) return;
-  const std::vector<std::string> names(words.begin(), words.end());
-  throw InputError(fmt::format("{}: {}", option, UnknownAmong(word, names)));
+  throw InputError(fmt::format("{}: {}", option, UnknownAmong(word, words)));
 }
 
 }  // namespace mindahl

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/nearest_name.h"
+#include "core/refuse.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/unprojected_residual.h"
 #include "mindahl/core/error.h"

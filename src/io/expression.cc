@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text.h"
-#include "core/nearest_name.h"
 #include "io/cells.h"
 #include "io/roles.h"
 
@@ -31,10 +30,8 @@ std::size_t ColumnInSum(std::string_view name, const ColumnNames& names, Role ro
     }
   }
   if (const auto column = names.Named(name, role)) return *column;
-  std::vector<std::string> known;
-  for (const ColumnName& column : names.columns()) known.push_back(ForMessage(column.name));
-  Refuse("{}: no column is called '{}' (for the {}){} {}", where, name, RulesOf(role).name,
-         DidYouMean(name, known), names.Listing());
+  Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
+         names.Listing());
 }
 
 /// Reads a sum of products, each of numbers and at most one column.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/nearest_name.h"
 #include "core/refuse.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
@@ -39,19 +38,6 @@ void AddCompanionsOfFixed(FitOptions& fit) {
   }
 }
 
-/// Takes a name that is no term for a column.
-void AddColumn(const std::string& name, FitOptions& fit) {
-  std::vector<std::string> names;
-  for (const auto& group : identification::TermGroups()) names.emplace_back(group.name);
-  if (const auto nearest = NearestName(name, names)) {
-    Refuse(
-        "--terms: '{}' is no term: did you mean '{}'? A column is named by "
-        "--covariate {}",
-        name, *nearest, name);
-  }
-  fit.covariates.push_back(name);
-}
-
 /// Applies --terms: groups of terms, and columns.
 void ApplyTerms(const FitRequest& request, FitOptions& fit) {
   const bool is_of_force = fit.response() == loop::Channel::kForce;
@@ -64,7 +50,7 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
     } else if (const auto* group = identification::FindTermGroup(name)) {
       AddGroup(*group, fit);
     } else {
-      AddColumn(name, fit);
+      fit.covariates.push_back(name);
     }
   }
 }

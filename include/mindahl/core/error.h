@@ -40,8 +40,7 @@ void RequireSameSize(std::string_view first, std::size_t first_size, std::string
                      std::size_t second_size);
 
 /// Refuses a word that is none of those that an option takes.
-/// @throws InputError naming the option, the word, the nearest of the words where one is near, and
-///   all of them
+/// @throws InputError naming the option, the word and all of those
 void RequireOneOf(std::string_view option, std::string_view word,
                   std::span<const std::string_view> words);
 

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/nearest_name.h"
+#include "core/refuse.h"
 #include "identification/dense.h"
 #include "identification/problem/moved_samples.h"
 #include "mindahl/core/error.h"
