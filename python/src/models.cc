@@ -21,7 +21,6 @@
 namespace mindahl::python {
 
 namespace py = pybind11;
-using namespace py::literals;  // NOLINT(google-build-using-namespace)
 using models::BranchLaw;
 using models::ContactState;
 using models::FrictionModel;
@@ -88,29 +87,16 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   return force;
 }
 
-/// A contact with the arguments that it was made of: it is pickled and copied by these and its
-/// memory.
-struct MadeState : ContactState {
-  py::dict arguments;
-};
-
-MadeState MakeState(double sigma, double slip_force, std::optional<double> alpha,
-                    const std::string& model_name, double unloaded_displacement,
-                    std::optional<double> rig_stiffness) {
+ContactState MakeState(double sigma, double slip_force, std::optional<double> alpha,
+                       const std::string& model_name, double unloaded_displacement,
+                       std::optional<double> rig_stiffness) {
   const FrictionModel& model = RequireModel(model_name);
-  return {
-      ContactState(model, LawOf(model, sigma, alpha, slip_force),
-                   {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)}),
-      py::dict("sigma"_a = sigma, "slip_force"_a = slip_force, "alpha"_a = alpha,
-               "model"_a = model_name, "unloaded_displacement"_a = unloaded_displacement,
-               "rig_stiffness"_a = rig_stiffness)};
+  return {model,
+          LawOf(model, sigma, alpha, slip_force),
+          {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)}};
 }
 
-MadeState RestoredState(const py::dict& arguments, const std::vector<double>& memory) {
-  auto state = py::type::of<MadeState>()(**arguments).cast<MadeState>();
-  state.Remember(memory);
-  return state;
-}
+ContactState CopyOf(const ContactState& state, const py::args& /*memo*/) { return state; }
 
 }  // namespace
 
@@ -119,8 +105,8 @@ void AddModels(py::module_& module) {
              py::arg("slip_force"), py::arg("alpha") = py::none(), py::arg("model"),
              py::arg("rig_stiffness") = py::none(), py::arg("asymmetry") = 0.0,
              py::arg("load") = py::none(), py::arg("reference_load") = 1.0, py::arg("gate") = 0.0);
-  py::class_<MadeState>(module, "ContactState",
-                        R"(A contact that is moved step by step.
+  py::class_<ContactState>(module, "ContactState",
+                           R"(A contact that is moved step by step.
 
 Exact for a motion that does not turn within a step, however long the step; no time enters.
 
@@ -144,11 +130,8 @@ Raises ValueError naming the quantity, its value and the rule.)")
       .def_property_readonly("displacement", &ContactState::Displacement, "[m]")
       .def_property_readonly("tangent_stiffness", &ContactState::TangentStiffness,
                              "dT/dδ [N/m] onward in the direction of the last motion")
-      .def(py::pickle(
-          [](const MadeState& state) { return std::pair(state.arguments, state.Memory()); },
-          [](const std::pair<py::dict, std::vector<double>>& kept) {
-            return RestoredState(kept.first, kept.second);
-          }));
+      .def("__copy__", &CopyOf)
+      .def("__deepcopy__", &CopyOf);
 }
 
 }  // namespace mindahl::python

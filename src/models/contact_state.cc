@@ -42,38 +42,6 @@ ContactState::Shape ContactState::ShapeOn(const ScaledBranch& branch) const {
                              [](const auto& contact) -> Shape { return contact; });
 }
 
-std::vector<double> ContactState::Memory() const {
-  std::vector<double> memory = {displacement_, force_over_slip_, course_.direction, course_.start,
-                                course_.ahead, course_.end,      course_.rise};
-  const auto add = [&](const ScaledBranch& branch) {
-    memory.insert(memory.end(),
-                  {branch.origin, branch.force, branch.height, branch.rate, branch.reach});
-  };
-  add(course_.branch);
-  std::ranges::for_each(suspended_, add);
-  return memory;
-}
-
-void ContactState::Remember(std::span<const double> memory) {
-  constexpr std::size_t kOwn = 7;
-  constexpr std::size_t kOfBranch = 5;
-  if (memory.size() < kOwn + kOfBranch || (memory.size() - kOwn) % kOfBranch != 0) {
-    ThrowInvalid("memory", static_cast<double>(memory.size()),
-                 "must be of as many numbers as Memory()");
-  }
-  const auto branch_at = [&](std::size_t at) {
-    return ScaledBranch{memory[at], memory[at + 1], memory[at + 2], memory[at + 3], memory[at + 4]};
-  };
-  displacement_ = memory[0];
-  force_over_slip_ = memory[1];
-  course_ = {branch_at(kOwn), memory[2], memory[3], memory[4], memory[5], memory[6]};
-  shape_ = ShapeOn(course_.branch);
-  suspended_.clear();
-  for (std::size_t at = kOwn + kOfBranch; at < memory.size(); at += kOfBranch) {
-    suspended_.push_back(branch_at(at));
-  }
-}
-
 ContactState::Entry ContactState::Enter(double displacement) const {
   RequireWithinReach("displacement [m]", displacement);
   const double direction = displacement > displacement_   ? 1.0

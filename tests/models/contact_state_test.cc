@@ -182,27 +182,6 @@ TEST(ContactState, ACopyGoesItsOwnWay) {
   }
 }
 
-TEST(ContactState, GoesOnFromTheMemoryOfAnother) {
-  Generator generator(7);
-  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
-  for (const char* model : {"mindlin-dahl", "dahl", "jenkins"}) {
-    for (const double rig : {3.0, kInfinity}) {
-      const ContactStateOptions options{.unloaded_displacement = 0.1, .rig = {.stiffness = rig}};
-      ContactState contact(Model(model), law, options);
-      for (const double displacement : DrawHistory(generator)) contact.Move(displacement);
-      ContactState other(Model(model), law, options);
-      other.Remember(contact.Memory());
-      ASSERT_EQ(other.Force(), contact.Force());
-      ASSERT_EQ(other.RememberedExtremes(), contact.RememberedExtremes());
-      for (const double displacement : DrawHistory(generator)) {
-        ASSERT_EQ(other.Move(displacement), contact.Move(displacement)) << model << ", rig " << rig;
-      }
-    }
-  }
-  ContactState contact(Model("dahl"), law);
-  EXPECT_THROW(contact.Remember(std::vector<double>(13)), InvalidArgument);
-}
-
 TEST(ContactState, RemembersAsManyExtremesAsTheLoopIsDeepNotAsItIsLong) {
   // Ten million steps on a loop with an inner loop: nothing is allocated after the first cycle, and
   // no force drifts after the second by a bit.

@@ -84,12 +84,6 @@ class ContactState {
   /// Returns to the virgin contact at δ₀; keeps the memory that was reserved.
   void Reset();
 
-  /// Returns what the contact remembers as numbers, with which Remember() makes a contact of the
-  /// same model, law and options go on as this one, bit for bit.
-  [[nodiscard]] std::vector<double> Memory() const;
-  /// @throws InvalidArgument unless the numbers are as many as Memory() may return
-  void Remember(std::span<const double> memory);
-
   /// Makes room for so many remembered extremes, after which Move allocates nothing before they are
   /// more.
   void Reserve(std::size_t extremes) { suspended_.reserve(extremes); }
