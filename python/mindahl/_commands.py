@@ -153,14 +153,14 @@ def convert(
 
 def excitation(
     waveform: str = "sine", *, amplitude: float, cycles: float = 1.0, samples_per_cycle: int = 200,
-    frequency: float = 1.0, growth: Optional[float] = None, seed: int = 1,
+    frequency: float = 1.0, growth: Optional[float] = None,
 ) -> tuple[Floats, Floats]:
     """Time [s] and imposed displacement [m], as `mindahl simulate --waveform` makes them.
 
-    waveform: "sine", "triangle", "growing-sine", "random", "nested".
+    waveform: "sine", "triangle", "growing-sine".
     amplitude: [m], > 0, the largest. cycles: > 0, multiples of 1/samples_per_cycle.
     samples_per_cycle: from 4; a multiple of 4 puts samples on the extremes. frequency: [Hz], > 0.
-    growth: of a growing sine, last over first envelope, >= 1; default 10. seed: of a random waveform.
+    growth: of a growing sine, last over first envelope, >= 1; default 10.
     Returns two arrays of one length, from 0 at time 0.
     Raises InputError (a ValueError) for an unknown waveform or a value out of range.
     """

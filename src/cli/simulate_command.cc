@@ -32,6 +32,7 @@ struct SimulateOptions {
   std::string displacement;         // column of that file; "": the first, or by its name
   double force_noise = 0.0;         // standard deviation [N]
   double displacement_noise = 0.0;  // standard deviation [m]
+  std::uint64_t seed = 1;           // of the noise
   std::string method = "exact";
   std::optional<std::size_t> steps;
   std::optional<double> tolerance;
@@ -112,7 +113,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   models::Excitation motion = MakeMotion(options, law);
   std::vector<double> force(motion.displacement.size());
   Prepare(approximation, law)({motion.displacement, motion.envelope}, force);
-  boost::random::mt19937_64 engine(options.excitation.seed);
+  boost::random::mt19937_64 engine(options.seed);
   AddNoise(force, options.force_noise, engine);
   AddNoise(motion.displacement, options.displacement_noise, engine);
   Say("simulate: warning", DoubtsAbout(options.law.contact), console);
@@ -180,8 +181,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   noise.AddQuantity("--noise-force", options->force_noise, "standard deviation [N]", "N", "N");
   noise.AddQuantity("--noise-displacement", options->displacement_noise, "standard deviation [m]",
                     "M", "m");
-  noise.AddCount("--seed", options->excitation.seed, "seed of the noise and of the random waveform",
-                 0, kMostSeed);
+  noise.AddCount("--seed", options->seed, "seed of the noise", 0, kMostSeed);
 
   const OptionGroup method(command, "Method");
   method.AddShown("--method", options->method, MethodHelp())

@@ -45,8 +45,6 @@ constexpr std::array kScenes = {
     Scene{"micro", "micro-slip, sine", Waveform::kSine, 0.8, 5},
     Scene{"macro", "macro-slip, sine", Waveform::kSine, 1.2, 5},
     Scene{"growing", "growing sine", Waveform::kGrowingSine, 1.5, 10},
-    Scene{"random", "random extremes", Waveform::kRandom, 1.2, 20},
-    Scene{"nested", "nested loops", Waveform::kNested, 0.95, 20},
 };
 
 /// The contact of Peyret et al. (2017) §3.
@@ -224,8 +222,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   CLI::Option* const scenes =
       group
           .Add("--excitation", options->excitations,
-               "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
-               "default all")
+               "micro (sine, lambda 0.8), macro (sine, 1.2), growing; default all")
           ->check(OneOf(NamesOf(kScenes, &Scene::name)));
   AddPath(group, options->path, options->column, "")->excludes(scenes);
   AddTolerance(OptionGroup(command, kPlainGroup), options->tolerance,

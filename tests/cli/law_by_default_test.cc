@@ -63,11 +63,30 @@ TEST_F(FitByDefault, AdvisesAStepThatWasTriedAndHelps) {
   EXPECT_TRUE(JsonOf("fit " + Simulated(noisy))["next"].is_null());
 }
 
+/// A motion from 0 through extremes [um], 100 samples from one to the next on a half-cosine.
+std::string Through(const std::vector<double>& extremes) {
+  std::string text = "x [um]\n0\n";
+  double from = 0.0;
+  for (const double to : extremes) {
+    for (int i = 1; i <= 100; ++i) {
+      const double share = (1 - std::cos(M_PI * i / 100)) / 2;
+      text += fmt::format("{}\n", std::lerp(from, to, share));
+    }
+    from = to;
+  }
+  return text;
+}
+
 TEST_F(FitByDefault, EstablishesCyclesThatDoNotClose) {
-  for (const char* drive : {"--waveform growing-sine --lambda 3 --cycles 6 --growth 30",
-                            "--waveform growing-sine --lambda 3 --cycles 2 --growth 3",
-                            "--waveform nested --lambda 1.5 --cycles 6",
-                            "--waveform random --lambda 2 --cycles 10 --seed 1"}) {
+  const std::string nested =
+      Write("nested.csv", Through({2.2, -1.8, 1.4, -1, 0.6, -0.2, 0.4, -0.8, 1.2, -1.6, 2, -2.2}));
+  const std::string random =
+      Write("random.csv", Through({1.1,  -1.9, 0.4, -0.6, 2.6, -3,   1.7,  0.9,  1.3, -2.1,
+                                   -0.3, -0.5, 2.9, 1.2,  2.4, -1.4, -0.7, -2.5, 0.2, -0.1}));
+  for (const std::string& drive :
+       {std::string("--waveform growing-sine --lambda 3 --cycles 6 --growth 30"),
+        std::string("--waveform growing-sine --lambda 3 --cycles 2 --growth 3"), "--path " + nested,
+        "--path " + random}) {
     SCOPED_TRACE(drive);
     Done("fit --strict " + Simulated(Words("--noise-force 0.2") + drive));
   }

@@ -60,15 +60,6 @@ TEST_F(Simulate, TakesAPathWithAHeaderAUnitAndFurtherColumns) {
               ElementsAre(0.004, -0.001));
 }
 
-TEST_F(Simulate, DrawsTheRandomWaveformOfItsSeed) {
-  const std::string random = kUnit + "--amplitude 2 --waveform random --cycles 9 --seed ";
-  const std::vector<double> drawn = Displacements(random + "5");
-  EXPECT_EQ(drawn, Displacements(random + "5"));
-  EXPECT_NE(drawn, Displacements(random + "6"));
-  const auto [least, greatest] = std::ranges::minmax(drawn);
-  EXPECT_EQ(std::max(-least, greatest), 2.0);
-}
-
 TEST_F(Simulate, AddsNoiseOfTheDeviationsThatAreAsked) {
   std::string rows = "x [um]\n";
   for (int i = 0; i < 4000; ++i) rows += i % 2 == 0 ? "0\n" : "1\n";

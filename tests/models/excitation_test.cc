@@ -2,7 +2,6 @@
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <boost/random/mersenne_twister.hpp>
 
 #include "support/histories.h"
 #include "support/prelude.h"
@@ -46,89 +45,13 @@ TEST(Excitation, GrowingSineGrowsByTheFactorAsked) {
   EXPECT_EQ(growing.displacement[325], growing.envelope[325]);
 }
 
-/// Samples at the times (2k + 1)/4f; the samples in a cycle are a multiple of 4.
-std::vector<double> AtExtremes(const std::vector<double>& values, std::size_t per_cycle) {
-  std::vector<double> extremes;
-  for (std::size_t i = per_cycle / 4; i < values.size(); i += per_cycle / 2) {
-    extremes.push_back(values[i]);
-  }
-  return extremes;
-}
-
-TEST(Excitation, RandomTurnsBackTwiceACycleAndReachesItsAmplitude) {
-  for (double cycles = 0.25; cycles < 21; cycles += 0.25) {
-    for (const std::uint64_t seed : {0U, 1U, 2U, 3U, 4U}) {
-      const Excitation random = MakeExcitation({.waveform = Waveform::kRandom,
-                                                .amplitude = 3e-7,
-                                                .cycles = cycles,
-                                                .samples_per_cycle = 40,
-                                                .seed = seed});
-      EXPECT_EQ(random.displacement.front(), 0.0);
-      EXPECT_EQ(Largest(random.displacement), 3e-7);
-      EXPECT_EQ(random.envelope, std::vector<double>(random.displacement.size(), 3e-7));
-      // No sample lies beyond the extremes on either side of it.
-      for (std::size_t i = 10; i + 20 < random.displacement.size(); i += 20) {
-        for (std::size_t j = i; j < i + 20; ++j) {
-          const double step = random.displacement[j + 1] - random.displacement[j];
-          EXPECT_GE(step * (random.displacement[i + 20] - random.displacement[i]), 0.0);
-        }
-      }
-      const std::vector<double> extremes = AtExtremes(random.displacement, 40);
-      for (std::size_t k = 2; k < extremes.size(); ++k) {
-        EXPECT_LT((extremes[k] - extremes[k - 1]) * (extremes[k - 1] - extremes[k - 2]), 0.0);
-      }
-    }
-  }
-}
-
-TEST(Excitation, RandomIsThatOfItsSeedOnEveryPlatform) {
-  const auto random = [](std::uint64_t seed) {
-    return MakeExcitation({.waveform = Waveform::kRandom, .amplitude = 1.0, .seed = seed})
-        .displacement;
-  };
-  EXPECT_EQ(random(1), random(1));
-  EXPECT_NE(random(1), random(2));
-  // The top bit of the generator's first number is the direction of the first step.
-  for (std::uint64_t seed = 0; seed < 64; ++seed) {
-    boost::random::mt19937_64 engine(~seed);
-    EXPECT_EQ(random(seed)[1] > 0, engine() >> 63 == 1) << seed;
-  }
-}
-
-TEST(Excitation, NestedExtremesCloseEveryLoopOnReturn) {
-  for (double cycles = 0.25; cycles < 21; cycles += 0.25) {
-    const Excitation nested = MakeExcitation({.waveform = Waveform::kNested,
-                                              .amplitude = 5.0,
-                                              .cycles = cycles,
-                                              .samples_per_cycle = 40});
-    EXPECT_EQ(nested.displacement.front(), 0.0);
-    EXPECT_EQ(Largest(nested.displacement), 5.0);
-    const std::vector<double> extremes = AtExtremes(nested.displacement, 40);
-    const auto size = [&](std::size_t k) { return std::abs(extremes[k]); };
-    const std::size_t innermost = extremes.size() / 2;
-    for (std::size_t k = 0; k < extremes.size(); ++k) {
-      EXPECT_EQ(extremes[k] > 0, k % 2 == 0);
-      if (k == 0) continue;
-      if (k <= innermost) {
-        EXPECT_LT(size(k), size(k - 1));
-      } else {
-        EXPECT_GT(size(k), size(k - 1));
-        EXPECT_GT(size(k), size(2 * innermost - k)) << "does not close its loop";
-        EXPECT_EQ(std::signbit(extremes[k]), std::signbit(extremes[2 * innermost - k]));
-      }
-    }
-  }
-}
-
 TEST(Excitation, NamesAreThoseOfTheCommandLine) {
   EXPECT_EQ(FindWaveform("sine"), Waveform::kSine);
   EXPECT_EQ(FindWaveform("triangle"), Waveform::kTriangle);
   EXPECT_EQ(FindWaveform("growing-sine"), Waveform::kGrowingSine);
-  EXPECT_EQ(FindWaveform("random"), Waveform::kRandom);
-  EXPECT_EQ(FindWaveform("nested"), Waveform::kNested);
   EXPECT_FALSE(FindWaveform("square").has_value());
   EXPECT_FALSE(FindWaveform("").has_value());
-  EXPECT_EQ(WaveformNames().size(), 5U);
+  EXPECT_EQ(WaveformNames().size(), 3U);
 }
 
 TEST(Excitation, RejectsValuesOutOfRange) {

@@ -87,13 +87,12 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
 
 
 def test_excitation_is_the_program_s_waveform():
-    for waveform in ("sine", "triangle", "growing-sine", "random", "nested"):
+    for waveform in ("sine", "triangle", "growing-sine"):
         lines = program("simulate", "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--waveform",
-                        waveform, "--amplitude", "3e-6", "--cycles", 3, "--samples-per-cycle", 40,
-                        "--seed", 5)
+                        waveform, "--amplitude", "3e-6", "--cycles", 3, "--samples-per-cycle", 40)
         expected = np.loadtxt(lines.splitlines(), delimiter=",", skiprows=1, unpack=True)
         time, displacement = mindahl.excitation(waveform, amplitude=3e-6, cycles=3,
-                                                samples_per_cycle=40, seed=5)
+                                                samples_per_cycle=40)
         np.testing.assert_array_equal(time, expected[0])
         np.testing.assert_array_equal(displacement, expected[1])
 

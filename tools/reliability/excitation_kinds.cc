@@ -84,11 +84,26 @@ Loop Triangle(const Truth& truth, std::size_t level, Draws& draws) {
 Loop Random(const Truth& truth, std::size_t level, Draws& draws) {
   Truth driven = truth;
   driven.samples_per_cycle = static_cast<std::size_t>(At(level, {200, 60, 22}));
-  return Under(driven,
-               Wave(driven, {.waveform = models::Waveform::kRandom,
-                             .cycles = Cycles(truth, 4),
-                             .seed = draws.Index(1000000)}),
-               draws);
+  const double cycles = Cycles(truth, 4);
+  // Two extremes a cycle, each turning back from the last, the largest that of the amplitude.
+  std::vector<double> extremes = {draws.Uniform(-1.0, 1.0)};
+  double bound = extremes.front() > 0 ? -1.0 : 1.0;
+  double largest = std::abs(extremes.front());
+  while (static_cast<double>(extremes.size()) <= 2 * cycles) {
+    extremes.push_back(extremes.back() + (bound - extremes.back()) * draws.Uniform(0.0, 1.0));
+    largest = std::max(largest, std::abs(extremes.back()));
+    bound = -bound;
+  }
+  const Motion motion = Along(driven, cycles, [&](double phase) {
+    const double swings = 2 * phase + 0.5;
+    const auto next = static_cast<std::size_t>(swings);
+    const double to = extremes[next];
+    const double from = next == 0 ? -to : extremes[next - 1];
+    const double weight =
+        (1 - std::cos(std::numbers::pi * (swings - static_cast<double>(next)))) / 2;
+    return std::lerp(from, to, weight) / largest;
+  });
+  return Under(driven, motion, draws);
 }
 
 Loop WanderingMean(const Truth& truth, std::size_t level, Draws& draws) {
