@@ -200,30 +200,26 @@ def plan(
     slip_force: Optional[float] = None, rig_stiffness: Optional[float] = None,
     force_noise: Optional[float] = None, displacement_noise: float = 0.0,
     amplitude: Union[None, float, Sequence[float]] = None, cycles: float = 3.0,
-    samples_per_cycle: int = 200, initial_state: str = "both",
-    with_: Union[None, str, Sequence[str]] = None,
-    want: Optional[Mapping[str, Union[float, str]]] = None, **contact: Optional[Uncertain],
+    samples_per_cycle: int = 200, want: Optional[Mapping[str, Union[float, str]]] = None,
 ) -> Report:
     """Plans a measurement: the standard errors that a loop of each amplitude would give.
 
     The contact, one of
-        sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of contact();
-        record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives contact
-            and noise; alpha is used where it does not determine one.
-    rig_stiffness: of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations.
+        sigma [N/m], alpha [-] (1/3), slip_force Tc [N];
+        record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives law and
+            noise.
+    rig_stiffness: known, of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations.
     amplitude: X [m], one or several; by default 13 around the onset of slip. cycles >= 1,
         samples_per_cycle >= 4.
-    initial_state: "virgin", "steady" or "both". with_: further terms to fit, "rig_stiffness",
-        "plateau_slope", "viscous", "force_drift".
     want: parameter to wanted standard error, in its unit or in percent: {"slip_force": "1%"}.
     Returns the sections of `mindahl plan --json`; .to_pandas() has a row a loop; .established is
         False where no amplitude reaches what is wanted.
     Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
     """
-    given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
+    given = {name: value for name, value in locals().items() if name != "record"}
     given["amplitude"] = list(amplitude) if isinstance(amplitude, tuple) else amplitude
     files = [] if record is None else [("record", record)]
-    return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
+    return Report(*ask("plan", words(given), files)[0], "plan")
 
 
 def command(name: str, *files: Any, **options: Any) -> Report:

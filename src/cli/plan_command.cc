@@ -7,9 +7,7 @@
 #include "cli/command.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/models/steady_loop.h"
 #include "report/statements.h"
 
 namespace mindahl::cli {
@@ -29,19 +27,12 @@ struct PlanOptions {
   std::string record;
   io::RecordColumns columns;
   Expectation expected;
-  std::optional<double> rig_stiffness;
   std::optional<double> force_noise;
   std::vector<double> amplitudes;
   Protocol protocol;
-  std::vector<InitialState> initial_states = {InitialState::kVirgin, InitialState::kSteady};
-  std::vector<std::string> with;
   std::vector<std::string> want;
   std::string json;
   std::string plot;
-
-  [[nodiscard]] bool fits_rig() const {
-    return std::ranges::find(with, "rig_stiffness") != with.end();
-  }
 };
 
 struct Plan {
@@ -53,86 +44,55 @@ struct Plan {
   std::vector<std::string> notes = {};
 };
 
-/// Fits a record for the law and the noise that are expected. Where it does not identify α, that is
-/// --alpha or Mindlin's: the record has the other parameters to it.
-identification::FitResult FitOfRecord(const PlanOptions& options,
-                                      identification::FitOptions fit_options,
-                                      std::vector<std::string>& notes) {
+constexpr std::array kStates = {InitialState::kVirgin, InitialState::kSteady};
+
+/// Takes law and noise from a fit of a record by Masing's law; where it does not identify α, with
+/// Mindlin's.
+void TakeRecord(const PlanOptions& options, Expectation& expected,
+                std::vector<std::string>& notes) {
+  if (IsAnythingGiven(options.law) || options.law.alpha) {
+    Refuse("--record excludes --sigma, --alpha and --slip-force");
+  }
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
   notes = file.notes;
-  if (options.rig_stiffness && !options.fits_rig()) {
-    RequirePositive("--rig-stiffness [N/m]", *options.rig_stiffness);
-    fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
-  }
-  const auto fitted = [&] {
-    identification::FitResult of_law = identification::Fit({&file.record, 1}, fit_options);
-    if (!of_law.law_choice || !of_law.law_choice->prefers_alternative()) return of_law;
-    identification::FitOptions of_other = fit_options;
-    of_other.model = of_law.law_choice->alternative;
-    return identification::Fit({&file.record, 1}, of_other);
-  };
-  identification::FitResult fit = fitted();
-  const auto is_inadequate = [&] {
-    return fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
-  };
-  if (fit.converged && !is_inadequate() && !fit.Find("alpha")->is_known()) {
-    if (!options.law.alpha) {
-      notes.emplace_back(
-          "alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
-    }
-    fit_options.fixed["alpha"] = options.law.alpha.value_or(1.0 / 3);
-    fit = fitted();
-  } else if (options.law.alpha) {
-    notes.emplace_back("--alpha is not used: the record has an alpha of its own");
+  identification::FitOptions fit_options;
+  if (!std::isinf(expected.rig.stiffness))
+    fit_options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
+  if (fit.converged && !fit.Find("alpha")->is_known()) {
+    notes.emplace_back("alpha is not identified: Mindlin's 1/3 is assumed");
+    fit_options.fixed["alpha"] = contact::kMindlinShapeExponent;
+    fit = identification::Fit({&file.record, 1}, fit_options);
   }
   if (!fit.converged) {
     Refuse("--record: {}: the fit does not converge: see mindahl fit", options.record);
   }
-  if (is_inadequate()) {
+  if (fit.adequacy.verdict != identification::AdequacyVerdict::kAdequate) {
     notes.emplace_back(
-        "the model does not describe this record: the plan holds for a contact that it describes");
-    return fit;
+        "Masing's law does not describe this record: what it misses counts as noise");
   }
   for (const std::string_view name : {"sigma", "slip_force"}) {
     if (fit.Find(name)->is_known()) continue;
     notes.push_back(fmt::format("{} is not identified: its value is a guess", name));
   }
-  return fit;
+  expected.law = fit.law;
+  expected.force_noise = fit.force_noise;
+  if (expected.displacement_noise > 0) return;
+  expected.displacement_noise = fit.records.front().displacement_noise;
 }
 
-Expectation Expect(const PlanOptions& options, const identification::FitOptions& fit_options,
-                   std::vector<std::string>& notes) {
+Expectation Expect(const PlanOptions& options, std::vector<std::string>& notes) {
   Expectation expected = options.expected;
-  const double displacement_noise = expected.displacement_noise;
-  RequireNonNegative("--displacement-noise [m]", displacement_noise);
+  Validate(expected.rig);
+  RequireNonNegative("--displacement-noise [m]", expected.displacement_noise);
   if (!options.record.empty()) {
-    if (IsAnythingGiven(options.law)) {
-      Refuse("--record excludes --sigma, --slip-force and other options that describe a contact");
-    }
-    const identification::FitResult fit = FitOfRecord(options, fit_options, notes);
-    expected = {fit.law, fit.rig, fit.force_noise, fit.records.front().displacement_noise};
-    if (fit.model->memory != models::Memory::kReturnPoint) {
-      const double amplitude =
-          identification::ContactAmplitude(fit, fit.law, fit.records.front().measures.amplitude);
-      expected.law = models::MasingEquivalent(fit.law, amplitude);
-      notes.push_back(fmt::format(
-          "Dahl's own law describes the record: the plan is for the Masing law of the same loop at "
-          "{:.4g} m",
-          amplitude));
-    }
-  } else {
-    if (!options.force_noise) {
-      Refuse("--force-noise missing: give the standard deviation of the force [N]");
-    }
+    TakeRecord(options, expected, notes);
+  } else if (options.force_noise) {
     expected.law = ResolveLaw(options.law);
-    notes = DoubtsAbout(options.law.contact);
+  } else {
+    Refuse("--force-noise missing: give the standard deviation of the force [N]");
   }
   if (options.force_noise) expected.force_noise = *options.force_noise;
-  if (displacement_noise > 0) expected.displacement_noise = displacement_noise;
-  if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
-  if (options.fits_rig() && std::isinf(expected.rig.stiffness)) {
-    Refuse("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
-  }
   return expected;
 }
 
@@ -149,12 +109,7 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
           "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
           text);
     }
-    if (identification::FindTerm(name) == nullptr) {
-      Refuse(
-          "--want: '{}' is no parameter: must be sigma, alpha, slip_force "
-          "or a term that --with names",
-          name);
-    }
+    RequireOneOf("--want", name, std::vector<std::string_view>{"sigma", "alpha", "slip_force"});
     if (!wanted.emplace(name, Precision{*precision, text.ends_with('%')}).second) {
       Refuse("--want: {} is given twice: give it once", name);
     }
@@ -163,12 +118,9 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 }
 
 Plan MakePlan(const PlanOptions& options) {
-  const std::vector<std::string_view> planned = identification::PlannedTerms();
-  for (const std::string& name : options.with) RequireOneOf("--with", name, planned);
-  const identification::FitOptions fit_options{.terms = options.with};
   Plan plan;
   plan.wanted = ParseWanted(options.want);
-  plan.expected = Expect(options, fit_options, plan.notes);
+  plan.expected = Expect(options, plan.notes);
   plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
   const models::BranchLaw& law = plan.expected.law;
   const std::array closed = {std::tuple("slip_force", law.slip_force, 0.07 * law.slip_force),
@@ -187,18 +139,18 @@ Plan MakePlan(const PlanOptions& options) {
   if (amplitudes.empty()) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
-  for (const InitialState state : options.initial_states) {
+  for (const InitialState state : kStates) {
     Protocol protocol = options.protocol;
     protocol.initial_state = state;
     for (const double amplitude : amplitudes) {
       protocol.amplitude = amplitude;
-      plan.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
+      plan.loops.push_back(identification::ExpectFit(plan.expected, protocol));
     }
     if (plan.wanted.empty()) continue;
     Protocol fewest;
     const std::optional<ExpectedFit> least = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
-        kShares.back() * plan.slip, fit_options, &fewest);
+        kShares.back() * plan.slip, {}, &fewest);
     const bool any = fewest.amplitude > 0;
     plan.reached.push_back({{"initial_state", report::Name(state)},
                             {"least_amplitude", least ? Json(least->protocol.amplitude) : Json()},
@@ -215,15 +167,13 @@ struct ShownError {
   bool is_exponent;  // its error as it is; of the others over the value
 };
 
-constexpr auto kShownErrors = std::to_array<ShownError>({{"sigma", "sigma", false},
-                                                         {"alpha", "alpha", true},
-                                                         {"slip_force", "Tc", false},
-                                                         {"rig_stiffness", "rig", false}});
+constexpr auto kShownErrors = std::to_array<ShownError>(
+    {{"sigma", "sigma", false}, {"alpha", "alpha", true}, {"slip_force", "Tc", false}});
 
 /// Returns the error as it is shown; empty beyond 1, where the bound determines little.
 std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
   const ParameterEstimate* estimate = fit.Find(shown.parameter);
-  if (estimate == nullptr || !estimate->standard_error) return std::nullopt;
+  if (!estimate->standard_error) return std::nullopt;
   const double error =
       shown.is_exponent ? *estimate->standard_error : *estimate->standard_error / estimate->value;
   return error < 1 ? std::optional(error) : std::nullopt;
@@ -239,10 +189,6 @@ Json ErrorRows(const Plan& plan) {
                 {"X [m]", fit.protocol.amplitude},
                 {"X/slip", fit.protocol.amplitude / plan.slip}};
     for (const ShownError& each : kShownErrors) {
-      const ParameterEstimate* estimate = fit.Find(each.parameter);
-      const bool is_fitted =
-          estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
-      if (!is_fitted) continue;
       const std::optional<double> error = ErrorOf(fit, each);
       row[each.name] = !error             ? "-"
                        : each.is_exponent ? fmt::format("{:.2g}", *error)
@@ -293,7 +239,7 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
   return text;
 }
 
-std::string ToJson(const PlanOptions& options, const Plan& plan) {
+std::string ToJson(const Plan& plan) {
   const Expectation& expected = plan.expected;
   Json contact = report::LawJson(expected.law);
   contact.update({{"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
@@ -311,28 +257,18 @@ std::string ToJson(const PlanOptions& options, const Plan& plan) {
             {"amplitude", fit.protocol.amplitude},
             {"peak_force", fit.peak_force},
             {"parameters", std::move(parameters)},
-            {"law_evidence", fit.law_evidence},
             {"law_decided", IsLawDecided(fit)}};
   });
-  Json wanted = Json::object();
-  for (const auto& [name, precision] : plan.wanted) {
-    wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
-  }
-  return report::Document("mindahl.plan/1",
-                          {{"expected", std::move(contact)},
-                           {"protocol",
-                            {{"cycles", options.protocol.cycles},
-                             {"samples_per_cycle", options.protocol.samples_per_cycle}}},
-                           {"loops", std::move(loops)},
-                           {"wanted", std::move(wanted)},
-                           {"reached", plan.reached},
-                           {"notes", plan.notes}});
+  return report::Document("mindahl.plan/1", {{"expected", std::move(contact)},
+                                             {"loops", std::move(loops)},
+                                             {"reached", plan.reached},
+                                             {"notes", plan.notes}});
 }
 
 /// Draws the expected errors against the amplitude, one panel per initial state.
-io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
+io::Plot ToPlot(const Plan& plan) {
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
-  for (const InitialState state : options.initial_states) {
+  for (const InitialState state : kStates) {
     io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
                         .y_label = "standard error [-]",
                         .log_x = true,
@@ -360,8 +296,8 @@ io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
 
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
-  if (!options.plot.empty()) io::WritePlot(ToPlot(options, plan), options.plot);
-  WriteAnswer(options.json, console, ToJson(options, plan), ToText(options, plan));
+  if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
+  WriteAnswer(options.json, console, ToJson(plan), ToText(options, plan));
   const auto fails = [](const Json& reached) { return reached["least_amplitude"].is_null(); };
   if (!plan.wanted.empty() && std::ranges::all_of(plan.reached, fails)) {
     console.exit_status = kNotEstablished;
@@ -379,21 +315,16 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       "precision. Exit status 3 when none does.",
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json"});
-  AddLawOptions(command, options->law);
+  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
   const OptionGroup expected(command, "What is expected");
-  CLI::Option* const record =
-      expected.Add("--record", options->record,
-                   "take contact and noise from a fit of this record; --alpha is used\n"
-                   "where the record does not determine it",
-                   "FILE");
+  CLI::Option* const record = expected.Add(
+      "--record", options->record, "take law and noise from a fit of this record instead", "FILE");
   AddColumnOptions(command, options->columns);
   for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
     command.get_option(name)->needs(record);
   }
-  expected.AddQuantity("--rig-stiffness", options->rig_stiffness,
-                       "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
-                       "unless --with fits it",
-                       "K", "N/m");
+  expected.AddQuantity("--rig-stiffness", options->expected.rig.stiffness,
+                       "known stiffness of the rig in series [N/m], of --record too", "K", "N/m");
   expected.AddQuantity("--force-noise", options->force_noise,
                        "standard deviation of the force noise [N]", "S", "N");
   expected.AddQuantity("--displacement-noise", options->expected.displacement_noise,
@@ -405,16 +336,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
   loop.AddCount("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle",
                 4, 1'000'000);
-  loop.AddChoice("--initial-state", options->initial_states,
-                 {{"both", options->initial_states},
-                  {"virgin", {InitialState::kVirgin}},
-                  {"steady", {InitialState::kSteady}}},
-                 "virgin: the loop includes the first loading; steady: it does not");
-  const OptionGroup fit(command, "The fit");
-  fit.Add("--with", options->with, "further terms that are fitted: rig_stiffness, plateau_slope …",
-          "TERM")
-      ->delimiter(',');
-  fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
+  loop.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%",
+           "NAME=ERROR")
       ->delimiter(',');
   const OptionGroup output(command, "Output");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");

@@ -54,7 +54,7 @@ const std::vector<Rule> kRules = {
     {"plan", {"--sigma", "--slip-force", "--force-noise", "--amplitude"}, kPositive},
     {"plan", {"--displacement-noise"}, kNonNegative},
     {"plan", {"--samples-per-cycle"}, kWhole},
-    {"plan", {"--initial-state", "--with", "--want"}, kNoNumber + Words{"-1", "0", ""}},
+    {"plan", {"--want"}, kNoNumber + Words{"-1", "0", ""}},
     {"contact", {"--friction", "--normal-load", "--contact-radius", "--compliance"}, kPositive},
     {"track", {"--force-noise", "--normal-load"}, kPositive},
     {"track", {"--displacement-noise", "--reversal-gate"}, kNonNegative},

@@ -35,7 +35,6 @@ EXEMPT = {
     "--threads": ("track batch", "a count"),
     "--steps": ("simulate", "a count"),
     "--cycles": ("plan", "a count"),
-    "--with": ("plan", "names"),
     "--want": ("plan", "in the unit of the parameter, or in percent"),
     "--tolerance": ("tradeoff convert", "relative, and says so"),
     "--beta": ("convert", "a share, and says so"),

@@ -99,8 +99,8 @@ COMMANDS = [
       for robot in ("mujoco", "mujoco-joint", "urdf", "sdf")],
     ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
-    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
-     "--initial-state steady --want alpha=0.001,slip_force=1%", None),
+    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 "
+     "--want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),

@@ -30,12 +30,10 @@ def same_document(result, *options):
 @pytest.mark.parametrize("keywords, options", [
     ({**LAW, "force_noise": 0.1, "want": {"alpha": 0.01, "slip_force": "1%"}},
      [*LAW_OPTIONS, "--force-noise", "0.1", "--want", "alpha=0.01,slip_force=1%"]),
-    ({**CONTACT, "force_noise": 0.1, "initial_state": "steady", "amplitude": 1e-6},
-     [*CONTACT_OPTIONS, "--force-noise", "0.1", "--initial-state", "steady", "--amplitude", "1e-6"]),
     ({**LAW, "alpha": 0.5, "force_noise": 0.1, "displacement_noise": 1e-9, "rig_stiffness": 1e9, "cycles": 2,
-      "with_": ["rig_stiffness", "viscous"], "samples_per_cycle": 80, "amplitude": [1e-6, 2e-6]},
+      "samples_per_cycle": 80, "amplitude": [1e-6, 2e-6]},
      [*LAW_OPTIONS, "--alpha", "0.5", "--force-noise", "0.1", "--displacement-noise", "1e-9",
-      "--rig-stiffness", "1e9", "--cycles", "2", "--with", "rig_stiffness,viscous",
+      "--rig-stiffness", "1e9", "--cycles", "2",
       "--samples-per-cycle", "80", "--amplitude", "1e-6", "--amplitude", "2e-6"]),
     ({"record": SPHERE, "cycles": 10}, ["--record", SPHERE, "--cycles", "10"]),
 ])
