@@ -1,6 +1,5 @@
 #include <cstddef>
 #include <filesystem>
-#include <set>
 #include <system_error>
 #include <thread>
 
@@ -21,7 +20,6 @@ struct BatchCommandOptions {
   std::string output;
   std::string json_path;
   std::string report_directory;
-  bool overwrite = false;
 };
 
 /// A directory that is there, or can be made where it is to be, and no file that is written.
@@ -36,20 +34,10 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
 }
 
 std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command) {
-  const std::vector<std::string>& files = options.request.files;
-  std::vector<std::string> pages;
-  pages.reserve(files.size());
-  std::set<std::string> taken = {"index"};
-  for (const std::string& file : files) {
-    const std::string stem = std::filesystem::path(file).stem().string();
-    std::string name = stem;
-    for (std::size_t k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}-{}", stem, k);
-    pages.push_back(name + ".html");
-  }
   const auto write_page = [&](const report::Report& report, std::size_t k) {
-    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / pages[k],
-                            report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
-    return pages[k];
+    io::WriteFileAtomically(
+        std::filesystem::path(options.report_directory) / request::PageName(k),
+        ToPage(report, ProvenanceOf(command, "", {&options.request.files[k], 1})));
   };
   return request::FitFiles(options.request, options.strict, options.threads,
                            options.report_directory.empty() ? request::WritePage() : write_page);
@@ -58,7 +46,6 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
-  if (!options.overwrite) RequireNotThere("--output", options.output, "--overwrite");
   Validate(request);  // before a directory is made
   RequireReportDirectory(options);
   const std::vector<BatchEntry> fits = FitInThreads(options, command);
@@ -105,7 +92,6 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
       "DIR");
   AddThreads(group, options->threads, "the results");
-  group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});

@@ -7,13 +7,12 @@
 #include <array>
 #include <atomic>
 #include <boost/math/statistics/univariate_statistics.hpp>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <future>
-#include <map>
 #include <new>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/probability.h"
@@ -48,13 +47,9 @@ constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
                                   Repeated{"half_gap", "", "N"},
                                   Repeated{"energy_per_cycle", "", "J"}};
 
-Json DocumentOf(const BatchEntry& entry) {
-  return entry.fit.empty() ? Json() : Json::parse(entry.fit);
-}
-
 /// Returns the row of a file in the table.
 Json RowOf(const BatchEntry& entry) {
-  const Json fit = DocumentOf(entry);
+  const Json fit = entry.fit.empty() ? Json() : Json::parse(entry.fit);
   Json row = {{"file", entry.file},
               {"done", entry.done},
               {"samples", At(fit, "/input/samples")},
@@ -134,38 +129,26 @@ Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& er
           {"says", says}};
 }
 
-/// Returns the laws of the fits that are done, that of most of them first: parameters of one law
-/// are no repeats of another's.
-std::vector<std::string> LawsOf(std::span<const BatchEntry> entries) {
-  std::map<std::string, std::size_t> counts;
-  std::vector<std::string> laws;
-  for (const BatchEntry& entry : entries) {
-    const Json model = At(DocumentOf(entry), "/model");
-    if (!entry.done || !model.is_string()) continue;
-    if (++counts[model] == 1) laws.push_back(model);
+/// True if fits that are done are by several laws: parameters of one are no repeats of another's.
+bool HasSeveralLaws(const Json& table) {
+  std::set<Json> laws;
+  for (const Json& row : table) {
+    if (row["done"].get<bool>()) laws.insert(row["model"]);
   }
-  std::ranges::stable_sort(laws, std::greater(), [&](const auto& law) { return counts.at(law); });
-  return laws;
+  return laws.size() > 1;
 }
 
-/// Returns which parameters are compared where the fits are of several laws; "" where of one.
-std::string LawsCompared(std::span<const BatchEntry> entries) {
-  const std::vector<std::string> laws = LawsOf(entries);
-  if (laws.size() < 2) return "";
-  return fmt::format(
-      "fits are by several laws, {}: parameters by {} alone are compared; --model NAME fits all by "
-      "one",
-      fmt::join(laws, ", "), laws.front());
-}
+constexpr std::string_view kSeveralLaws =
+    "fits are by several laws, whose parameters are not compared: --model NAME fits all by one";
 
 /// Returns what repeats of a test say of each quantity that two files or more have.
-Json RepeatRows(std::span<const BatchEntry> entries) {
-  const Json table = TableRows(entries);
-  const std::vector<std::string> laws = LawsOf(entries);
+Json RepeatRows(const Json& table) {
+  const bool has_several_laws = HasSeveralLaws(table);
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
     std::vector<double> values;
     std::vector<double> errors;  // by which repeats scatter
+    if (has_several_laws && !quantity.parameter.empty()) continue;
     for (const Json& row : table) {
       /// NaN where the row has none.
       const auto number = [&](std::string_view name, const char* suffix) {
@@ -178,7 +161,6 @@ Json RepeatRows(std::span<const BatchEntry> entries) {
           row["warnings"].get_ref<const std::string&>().find("loop_not_seen") == std::string::npos;
       if (!row["done"].get<bool>() || !is_loop || std::isnan(value)) continue;
       if (!parameter.empty()) {
-        if (laws.size() > 1 && row["model"] != laws.front()) continue;
         const Json& verdict = row[fmt::format("{}_verdict", parameter)];
         if (verdict == "bounded_below" || verdict == "not_identifiable") continue;
         constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
@@ -197,20 +179,7 @@ Json RepeatRows(std::span<const BatchEntry> entries) {
   return repeats;
 }
 
-// --- the index of pages
-
-const std::string kNone = "–";
-/// Returns an address within a page: whatever is no letter, digit, '-', '_' or '.' in hexadecimal.
-std::string Address(std::string_view name) {
-  std::string address;
-  for (const char character : name) {
-    const auto byte = static_cast<unsigned char>(character);
-    const bool is_plain = (byte < 128 && std::isalnum(byte) != 0) ||
-                          std::string_view("-_.").find(character) != std::string_view::npos;
-    address += is_plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
-  }
-  return address;
-}
+const std::string kNone = "–";  // in the index of pages
 
 }  // namespace
 
@@ -232,7 +201,7 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
       entry.parameters.push_back(estimate == nullptr ? kNone : report::ValueText(*estimate));
     }
-    if (write_page) entry.page = write_page(report, k);
+    if (write_page) write_page(report, k);
     if (!entry.done) {
       fault = report.fit.converged ? "not established: the model is not adequate or a free "
                                      "parameter not identifiable"
@@ -282,9 +251,10 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
   const auto done = std::ranges::count_if(entries, &BatchEntry::done);
   std::string text = fmt::format("{} of {} files fitted{}{}\n", done, entries.size(),
                                  output.empty() ? "" : ", in ", output);
-  const Json repeats = RepeatRows(entries);
+  const Json table = TableRows(entries);
+  const Json repeats = RepeatRows(table);
   if (!repeats.empty()) text += "\nif these are repeats:\n" + report::TableText(repeats);
-  if (const std::string laws = LawsCompared(entries); !laws.empty()) text += laws + '\n';
+  if (HasSeveralLaws(table)) text += fmt::format("{}\n", kSeveralLaws);
   return text;
 }
 
@@ -293,11 +263,11 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
     return {{"file", entry.file},
             {"done", entry.done},
             {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-            {"fit", DocumentOf(entry)}};
+            {"fit", entry.fit.empty() ? Json() : Json::parse(entry.fit)}};
   });
   return report::Document("mindahl.batch/1", {{"output", output.empty() ? Json() : Json(output)},
                                               {"files", std::move(files)},
-                                              {"repeats", RepeatRows(entries)}});
+                                              {"repeats", RepeatRows(TableRows(entries))}});
 }
 
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
@@ -312,11 +282,11 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
     cells.push_back(entry.fault);
     files.push_back({entry.file, std::move(cells),
                      entry.verdict.empty() ? "" : report::JudgementOf(entry.verdict),
-                     Address(entry.page)});
+                     entry.fit.empty() ? "" : PageName(files.size())});
   }
-  const std::string laws = LawsCompared(entries);
-  const std::string repeats = report::TableHtml(
-      "over the fitted files in which the quantity is known", RepeatRows(entries));
+  const Json table = TableRows(entries);
+  const std::string repeats =
+      report::TableHtml("over the fitted files in which the quantity is known", RepeatRows(table));
   return report::PageHtml(
       fmt::format("{} of {} files fitted", done, entries.size()),
       report::SectionHtml(
@@ -324,8 +294,9 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
                                      {"file", "number", "verdict", "sigma", "alpha", "slip_force",
                                       "why not done"},
                                      files)) +
-          report::SectionHtml("If these are repeats",
-                              repeats + (laws.empty() ? "" : report::ParagraphHtml(laws))) +
+          report::SectionHtml(
+              "If these are repeats",
+              repeats + (HasSeveralLaws(table) ? report::ParagraphHtml(kSeveralLaws) : "")) +
           report::ProvenanceHtml(provenance));
 }
 

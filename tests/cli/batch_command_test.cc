@@ -29,16 +29,6 @@ class BatchCommand : public CommandTest {
   }
 };
 
-TEST_F(BatchCommand, WritesOverNothingUnasked) {
-  Done(Batch({Repeat(1)}));
-  const std::string before = Content();
-  const Words two = Batch({Repeat(1), Repeat(2)});
-  ExpectRefused(two, "table.csv exists: add --overwrite");
-  EXPECT_EQ(Content(), before);
-  Done(two + "--overwrite");
-  EXPECT_THAT(Lines(Content()), SizeIs(3));
-}
-
 TEST_F(BatchCommand, SaysOfEachFileWhatFitSaysWithAnyNumberOfThreads) {
   const Words files = {Repeat(1), Repeat(2), Repeat(3)};
   const json batch = JsonOf(Batch(files + "--normal-load 50 --threads 1"));
@@ -54,7 +44,7 @@ TEST_F(BatchCommand, SaysOfEachFileWhatFitSaysWithAnyNumberOfThreads) {
     EXPECT_EQ(Cell(table, k + 1, "fault"), "");
   }
   for (const char* threads : {"2", "7"}) {
-    Done(Batch(files + "--normal-load 50 --overwrite" + Words{"--threads", threads}));
+    Done(Batch(files + "--normal-load 50" + Words{"--threads", threads}));
     EXPECT_EQ(Content(), content);
   }
 }
@@ -77,7 +67,7 @@ TEST_F(BatchCommand, ContinuesAfterAFileThatFails) {
 TEST_F(BatchCommand, FailsAFileThatIsNotEstablishedWhereStrict) {
   const Words small = Batch({Simulated("--lambda 0.05 --noise-force 0.13 --cycles 3")});
   Done(small);
-  EXPECT_EQ(RunCommand(small + "--strict --overwrite").status, kNotEstablished);
+  EXPECT_EQ(RunCommand(small + "--strict").status, kNotEstablished);
   EXPECT_EQ(Cell(testing::Rows(Content()), 1, "done"), "no");
 }
 

@@ -98,10 +98,10 @@ TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
   EXPECT_EQ(outcome.status, kNotEstablished) << outcome.err;
   const std::string index = FileContent(Path("pages/index.html"));
   EXPECT_THAT(index, HasSubstr("<h1>2 of 3 files fitted</h1>"));
-  EXPECT_THAT(index, HasSubstr("<a href=\"loop.html\">"));
-  EXPECT_THAT(index, HasSubstr("<a href=\"loop-2.html\">"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"page-1.html\">"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"page-2.html\">"));
   EXPECT_THAT(index, HasSubstr("(column 2) holds no numbers"));
-  EXPECT_FALSE(std::filesystem::exists(Path("pages/index-2.html")));
+  EXPECT_FALSE(std::filesystem::exists(Path("pages/page-3.html")));
 }
 
 TEST(ShellWord, IsQuotedWhereAShellWouldTakeItApart) {

@@ -14,18 +14,20 @@ namespace mindahl::request {
 /// Holds the fit of one source of a batch, or the fault for which it has none.
 struct BatchEntry {
   std::string file;
-  std::string fault;               ///< why it is not done; "" where it is
-  bool done = false;               ///< fitted, and Established()
-  std::string fit;                 ///< its JSON, as `mindahl fit --json` writes it; or ""
-  std::vector<std::string> notes;  ///< assumptions of the run, one sentence each
-  std::string sha256;              ///< SHA-256 of the file; "" if it is none
-  std::string page;     ///< address of its page, relative to the index; "" where there is none
-  std::string verdict;  ///< one word for the fit's adequacy; "" where there is none
+  std::string fault;                    ///< why it is not done; "" where it is
+  bool done = false;                    ///< fitted, and Established()
+  std::string fit;                      ///< its JSON, as `mindahl fit --json` writes it; or ""
+  std::vector<std::string> notes;       ///< assumptions of the run, one sentence each
+  std::string sha256;                   ///< SHA-256 of the file; "" if it is none
+  std::string verdict;                  ///< one word for the fit's adequacy; "" where there is none
   std::vector<std::string> parameters;  ///< σ, α and Tc in words; empty where there is no fit
 };
 
-/// Writes the page of the k-th source and returns its name; an empty function writes no pages.
-using WritePage = std::function<std::string(const report::Report&, std::size_t k)>;
+/// Writes the page of the k-th source; an empty function writes no pages.
+using WritePage = std::function<void(const report::Report&, std::size_t k)>;
+
+/// Returns the name of the page of the k-th source, counted from 0, next to the index.
+inline std::string PageName(std::size_t k) { return "page-" + std::to_string(k + 1) + ".html"; }
 
 /// Fits one source on its own. A fault of the source is one of the entry.
 /// @param fit  reads and fits it
