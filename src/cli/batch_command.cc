@@ -33,11 +33,11 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
          error ? error.message() : "it is a file");
 }
 
-std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command) {
+std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const Console& console) {
   const auto write_page = [&](const report::Report& report, std::size_t k) {
     io::WriteFileAtomically(
         std::filesystem::path(options.report_directory) / request::PageName(k),
-        ToPage(report, ProvenanceOf(command, "", {&options.request.files[k], 1})));
+        ToPage(report, ProvenanceOf(console.command_line, {&options.request.files[k], 1})));
   };
   return request::FitFiles(options.request, options.strict, options.threads,
                            options.report_directory.empty() ? request::WritePage() : write_page);
@@ -48,7 +48,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   RequireDistinctFiles(request.files);
   Validate(request);  // before a directory is made
   RequireReportDirectory(options);
-  const std::vector<BatchEntry> fits = FitInThreads(options, command);
+  const std::vector<BatchEntry> fits = FitInThreads(options, console);
   for (const BatchEntry& fit : fits) {
     Say("batch: note", fit.notes, console);
     if (!fit.fault.empty()) {
@@ -57,9 +57,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {
-    io::WriteFileAtomically(
-        std::filesystem::path(options.report_directory) / "index.html",
-        IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
+                            IndexPage(fits, ProvenanceOf(console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, ToJson(fits, options.output),
               ToText(fits, options.output));

@@ -30,9 +30,8 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
     io::WritePlot(report::ToPlot(report), options.plot_path);
   }
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(
-        options.report_path,
-        ToPage(report, ProvenanceOf(command, console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(options.report_path,
+                            ToPage(report, ProvenanceOf(console.command_line, InputsOf(command))));
   }
   if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));

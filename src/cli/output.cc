@@ -134,18 +134,11 @@ void RequireNotThere(std::string_view option, const std::string& path, std::stri
   Refuse("{}: {} exists: add {}", option, path, remedy);
 }
 
-report::Provenance ProvenanceOf(const CLI::App& command, const std::string& command_line,
+report::Provenance ProvenanceOf(const std::string& command_line,
                                 std::span<const std::string> files) {
-  report::Provenance provenance{.command = command_line, .inputs = {}, .options = {}};
+  report::Provenance provenance{.command = command_line, .inputs = {}};
   for (const std::string& file : files) {
     provenance.inputs.push_back({.name = file, .sha256 = io::Sha256OfFile(file)});
-  }
-  for (const CLI::Option* option : OptionsOf(command)) {
-    if (option->count() == 0) continue;
-    const bool is_flag = option->get_items_expected_max() == 0;
-    provenance.options.emplace_back(
-        "--" + NameOf(*option),
-        is_flag ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
   }
   return provenance;
 }

@@ -443,9 +443,8 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
   const TrackedTest test = TrackRun(options, command).Track();
   console.exit_status = test.established() ? kDone : kNotEstablished;
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(
-        options.report_path,
-        ToPage(test, ProvenanceOf(command, console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(options.report_path,
+                            ToPage(test, ProvenanceOf(console.command_line, InputsOf(command))));
   }
   const Json quantities = QuantityRows(test);
   WriteAnswer(options.json_path, console, ToJson(test, quantities), ToText(test, quantities));

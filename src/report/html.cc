@@ -130,17 +130,12 @@ std::string ProvenanceHtml(const Provenance& provenance) {
   for (const InputFile& input : provenance.inputs) {
     inputs.push_back({input.name, {input.sha256.value_or("not a regular file, read once")}});
   }
-  std::vector<TableLine> options;
-  options.reserve(provenance.options.size());
-  for (const auto& [name, value] : provenance.options) options.push_back({name, {value}});
   return SectionHtml("How to reproduce this page",
                      (provenance.command.empty() ? ""
                                                  : fmt::format("<pre><code>{}</code></pre>\n",
                                                                Prose(provenance.command))) +
                          ParagraphHtml(fmt::format("mindahl {}", Version())) +
-                         TableHtml("files read", {"file", "SHA-256 of its bytes"}, inputs) +
-                         TableHtml("options, including those of a configuration file",
-                                   {"option", "value"}, options));
+                         TableHtml("files read", {"file", "SHA-256 of its bytes"}, inputs));
 }
 
 }  // namespace mindahl::report

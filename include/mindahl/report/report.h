@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
@@ -107,9 +106,7 @@ struct InputFile {
 /// Holds what is needed to make a result again.
 struct Provenance {
   std::string command{};            ///< command for a shell; "" where there was none
-  std::vector<InputFile> inputs{};  ///< files that were read
-  /// Options with their values, those of a configuration file too.
-  std::vector<std::pair<std::string, std::string>> options{};
+  std::vector<InputFile> inputs{};  ///< files that were read, a configuration too
 };
 
 /// Returns the report of a fit as one page of HTML 5, for people: the answer's lines beside the
