@@ -6,7 +6,6 @@
 
 #include "cli/command.h"
 #include "mindahl/convert/conversion.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -43,18 +42,13 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
   return *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl");
 }
 
-/// Returns the terms of a fit that the target does not have: all but the law's, what a rig takes,
-/// what is of the record, and a viscous force where the target has one.
+/// Returns the terms of a fit that the target does not have: all but what a rig takes, and a
+/// viscous force where the target has one.
 std::vector<std::string> TermsLeftOut(const Json& fit, const TargetRow& target) {
-  std::vector<std::string> left_out;
-  const Json parameters = report::At(fit, "/parameters");
-  for (const auto& [name, parameter] : parameters.items()) {
-    const identification::Term* term = identification::TermOfParameter(name);
-    const bool is_of_law = term == nullptr || term->presence == identification::Presence::kAlways;
-    const bool is_apart = name == "rig_stiffness" || (name == "viscous" && target.Uses(name));
-    if (is_of_law || is_apart || term->scope == identification::Scope::kRecord) continue;
-    if (parameter.value("value", Json()) != 0.0) left_out.push_back(name);
-  }
+  auto left_out = fit.value(Json::json_pointer("/terms/added"), std::vector<std::string>());
+  std::erase_if(left_out, [&](const std::string& name) {
+    return name == "rig_stiffness" || (name == "viscous" && target.Uses(name));
+  });
   return left_out;
 }
 

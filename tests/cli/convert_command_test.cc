@@ -88,8 +88,8 @@ TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
 TEST_F(Convert, SaysWhatOfAFitTheTargetHasNot) {
   const std::string fit = Write("fit.json", R"({"schema": "mindahl.fit/2", "model": "dahl",
       "parameters": {"sigma": {"value": 5e7}, "alpha": {"value": 0.5}, "slip_force": {"value": 30},
-      "asymmetry": {"value": -0.2}, "viscous": {"value": 12.5}, "force_offset_2": {"value": 1},
-      "slip_slope": {"value": 0, "status": "fixed"}, "force_drift": {"value": 0.1}},
+      "asymmetry": {"value": -0.2}, "viscous": {"value": 12.5}},
+      "terms": {"added": ["rig_stiffness", "asymmetry", "viscous"]},
       "measured": {"amplitude": 2e-6}})");
   const json joint = JsonOf("convert --to mujoco-joint " + fit);
   EXPECT_EQ(joint["left_out"], json({"asymmetry"}));
