@@ -77,7 +77,7 @@ py::dict KeptOf(const py::object& self) {
 FitRequest RequestOf(const std::vector<std::string>& words) {
   FitRequest request;
   cli::ReadOptions(words, [&request](CLI::App& app) {
-    cli::AddFitOptions(app, request, cli::NormalLoads::kOneAFile);
+    cli::AddFitOptions(app, request);
   });
   return request;
 }

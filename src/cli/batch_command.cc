@@ -46,7 +46,8 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
-  Validate(request);  // before a directory is made
+  Validate(request.contact);  // before a directory is made
+  MakeFitOptions(request);
   RequireReportDirectory(options);
   const std::vector<BatchEntry> fits = FitInThreads(options, console);
   for (const BatchEntry& fit : fits) {
@@ -80,7 +81,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   OptionGroup(command, kPlainGroup)
       .Add("files", options->request.files, "CSV records, each a test of its own", "FILE")
       ->required();
-  AddFitOptions(command, options->request, NormalLoads::kOne);
+  AddFitOptions(command, options->request);
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
       ->required();

@@ -157,14 +157,10 @@ void AddThreads(const OptionGroup& group, std::size_t& threads, const std::strin
 contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
                                             std::string_view unit);
 
-/// How many normal loads an option may give.
-enum class NormalLoads { kOne, kOneAFile };
-
 /// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
 /// Each takes a standard uncertainty.
 /// @param options  must outlive the application
-void AddContactOptions(CLI::App& command, ContactOptions& options,
-                       NormalLoads loads = NormalLoads::kOne);
+void AddContactOptions(CLI::App& command, ContactOptions& options);
 
 /// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
@@ -180,7 +176,7 @@ void AddLawOptions(CLI::App& command, LawOptions& request);
 /// slip is only approached.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
-void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
+void AddFitOptions(CLI::App& command, FitRequest& request);
 
 /// Adds the options that say which columns of a record are read, and in what unit.
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);

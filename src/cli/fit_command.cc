@@ -63,7 +63,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   OptionGroup(command, kPlainGroup)
       .Add("files", options->request.files, "CSV records of one contact", "FILE")
       ->required();
-  AddFitOptions(command, options->request, NormalLoads::kOneAFile);
+  AddFitOptions(command, options->request);
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");

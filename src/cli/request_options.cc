@@ -68,27 +68,19 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
   return {*value, *standard_error};
 }
 
-void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
-  if (loads == NormalLoads::kOneAFile) {
-    const auto read = [&options](const std::string& text) {
-      std::vector<UncertainValue> each;
-      for (const std::string_view load : PartsOf(text, ',')) {
-        each.push_back(ParseUncertainValue(load, "--normal-load", "N"));
-      }
-      SetNormalLoads(options, each);
-    };
-    OptionGroup(command, kGroup)
-        .AddRead("--normal-load", read,
-                 "normal load N [N], one for all files or one a file: 25,50,100; like\n"
-                 "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
-                 "50+/-0.5, 50±1%",
-                 "N[+-U],...");
-  } else {
-    AddKnown(command, "--normal-load", options.known.normal_load,
-             "normal load N [N]; like all below exact, or with a standard\n"
-             "uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%",
-             "N", "N");
-  }
+void AddContactOptions(CLI::App& command, ContactOptions& options) {
+  const auto read = [&options](const std::string& text) {
+    std::vector<UncertainValue> each;
+    for (const std::string_view load : PartsOf(text, ',')) {
+      each.push_back(ParseUncertainValue(load, "--normal-load", "N"));
+    }
+    SetNormalLoads(options, each);
+  };
+  OptionGroup(command, kGroup)
+      .AddRead("--normal-load", read,
+               "normal load N [N]; in fit one for all files or one a file: 25,50,100;\nlike all "
+               "below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n50+/-0.5, 50±1%",
+               "N[+-U],...");
   for (const auto& [body, number] :
        {std::pair(&options.known.body_1, 1), {&options.known.body_2, 2}}) {
     AddKnown(command, fmt::format("--youngs-modulus-{}", number), body->youngs_modulus,
@@ -441,7 +433,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                     "M", "m");
 }
 
-void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
+void AddFitOptions(CLI::App& command, FitRequest& request) {
   AddColumnOptions(command, request.columns);
   AddSelections(command, request);
   const OptionGroup group(command, kColumnGroup);
@@ -455,7 +447,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
       "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
       "empty cells, which are left out; skip: all are left out");
   AddModelOptions(command, request);
-  AddContactOptions(command, request.contact, loads);
+  AddContactOptions(command, request.contact);
 }
 
 void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {

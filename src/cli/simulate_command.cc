@@ -2,7 +2,6 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include "cli/command.h"
 #include "mindahl/io/csv_table.h"
@@ -35,7 +34,6 @@ struct SimulateOptions {
   std::uint64_t seed = 1;           // of the noise
   std::string method = "exact";
   std::optional<std::size_t> steps;
-  std::optional<double> tolerance;
   std::string output;
 };
 
@@ -67,31 +65,18 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     excitation.amplitude = *options.lambda * gross_slip;
   }
   motion = models::MakeExcitation(excitation);
-  if (excitation.waveform == models::Waveform::kGrowingSine) return motion;
-  motion.envelope.clear();
-  if (excitation.growth != models::ExcitationOptions().growth) {
-    Refuse("--growth has no effect with --waveform {}: give --waveform growing-sine",
-           options.waveform);
-  }
+  if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();
   return motion;
 }
 
 Approximation ResolveMethod(const SimulateOptions& options) {
   const methods::Method& method = *methods::FindMethod(options.method);
-  for (const auto& [is_without_effect, option, other] :
-       {std::tuple(options.steps && method.steps.empty(), "--steps", "iwan"),
-        {options.tolerance && !method.adaptive, "--tolerance", "dopri5"}}) {
-    if (!is_without_effect) continue;
-    Refuse("{} has no effect with --method {}: choose another method, as --method {}", option,
-           method.name, other);
-  }
   const bool is_simplified = models::FindSimplifiedLaw(options.model) != nullptr;
   if (is_simplified && method.name != "exact") {
     Refuse("--method {} cannot compute --model {}, a simplification", method.name, options.model);
   }
   Approximation approximation{options.model, options.method, {}};
   approximation.resolution.steps = options.steps.value_or(method.default_steps);
-  if (options.tolerance) approximation.resolution.tolerance = *options.tolerance;
   return approximation;
 }
 
@@ -190,8 +175,6 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       .Add("--steps", options->steps, "substeps a sample, elements of iwan, intervals of table",
            "N")
       ->check(WholeNumber(1, 1'000'000'000));
-  method.Add("--tolerance", options->tolerance,
-             "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
   plain.Add("-o,--output", options->output, "CSV file; default standard output", "PATH");
   OnRun(command, [options, &console] { RunSimulate(*options, console); });
 }

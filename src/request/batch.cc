@@ -221,7 +221,8 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
 
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads, const WritePage& write_page) {
-  MakeFitOptions(request);  // what is wrong with the options is no fault of a file
+  Validate(request.contact);  // what is wrong with the options is no fault of a file
+  MakeFitOptions(request);
   std::vector<BatchEntry> entries(request.files.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

@@ -45,8 +45,13 @@ bool IsAnythingGiven(const ContactOptions& options) {
          IsAnythingGiven(known.body_2);
 }
 
-void Validate(const ContactOptions& options) {
+void Validate(const ContactOptions& options, std::size_t records) {
   contact::Validate(options.known);
+  const std::size_t loads = options.normal_loads.size();
+  if (loads > 1 && loads != records) {
+    Refuse("--normal-load: {} loads for {} record{}: give one for all or one a record", loads,
+           records, records > 1 ? "s" : "");
+  }
   if (options.friction_coefficient) {
     RequirePositive("friction [-]", options.friction_coefficient->value);
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/refuse.h"
@@ -35,69 +36,42 @@ using loop::Record;
 
 namespace {
 
-/// Refuses records that are no loops, naming the place in the file: of two kinds, of a column that
-/// never changes or is beyond any unit that is meant, or with a gate that leaves no turning point.
-void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+/// Refuses records that are no loops, naming the place in the file: of two kinds, or of a column
+/// that never changes or is beyond any unit that is meant.
+void RequireLoops(const std::vector<RecordFile>& inputs) {
   constexpr double kSmallest = 1e-100;
   constexpr double kLargest = 1e100;
-  const bool is_torsional = inputs.front().is_torsional;
-  const report::Units& units = report::UnitsOf(is_torsional);
-  const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
-  const auto place = [&](std::size_t r, std::size_t sample, const io::ChosenColumn& column) {
-    return fmt::format("{}:{}:{}", inputs[r].name, inputs[r].LineOf(sample), column.index);
-  };
-  const auto half_range = [&](std::size_t r, const io::ChosenColumn& column,
-                              const std::vector<double>& values, std::string_view what,
-                              std::string_view unit) {
-    const auto [least, greatest] = std::ranges::minmax_element(values);
-    const double half = *greatest / 2 - *least / 2;
-    if (half == 0 || (half >= kSmallest && half <= kLargest)) return half;
-    const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
-    Refuse(
-        "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
-        "choose other units",
-        place(r, static_cast<std::size_t>(widest - values.begin()), column), what, half, unit);
-  };
-  const auto refuse_constant = [&](std::size_t r, const io::ChosenColumn& column, double value,
-                                   std::string_view what, std::string_view unit,
-                                   std::string_view need) {
-    Refuse(
-        "{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
-        "choose another column with --{}",
-        place(r, 0, column), what, value, unit, need, what);
-  };
-  double travel = 0.0;
-  double force = 0.0;
-  for (std::size_t r = 0; r < inputs.size(); ++r) {
-    const RecordFile& input = inputs[r];
-    const Record& record = input.record;
-    if (input.is_torsional != is_torsional) {
-      Refuse("{} holds a force and {} a torque: fit them apart", inputs[is_torsional ? r : 0].name,
-             inputs[is_torsional ? 0 : r].name);
-    }
-    const double own_travel =
-        half_range(r, input.displacement, record.displacement, "displacement", units.displacement);
-    if (own_travel == 0) {
-      refuse_constant(r, input.displacement, record.displacement.front(), "displacement",
-                      units.displacement, "moving");
-    }
-    if (input.time && !record.time.empty()) half_range(r, input.time, record.time, "time", "s");
-    travel = std::max(travel, own_travel);
-    force = std::max(force, half_range(r, input.force, record.force, "force", units.force));
-  }
   const RecordFile& first = inputs.front();
-  if (force == 0) {
-    refuse_constant(0, first.force, first.record.force.front(), "force", units.force, "loaded");
+  const report::Units& units = report::UnitsOf(first.is_torsional);
+  for (const RecordFile& input : inputs) {
+    if (input.is_torsional != first.is_torsional) {
+      Refuse("of {} and {} one holds a force, one a torque: fit them apart", first.name,
+             input.name);
+    }
+    const Record& record = input.record;
+    for (const auto& [what, column, values, unit] :
+         {std::tuple("displacement", &input.displacement, &record.displacement, units.displacement),
+          {"force", &input.force, &record.force, units.force},
+          {"time", &input.time, &record.time, "s"}}) {
+      if (values->empty() || !*column) continue;
+      const auto [least, greatest] = std::ranges::minmax_element(*values);
+      const double half = *greatest / 2 - *least / 2;
+      const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
+      const auto row = static_cast<std::size_t>((half == 0 ? least : widest) - values->begin());
+      const std::string place =
+          fmt::format("{}:{}:{}", input.name, input.LineOf(row), column->index);
+      if (half == 0) {
+        Refuse(
+            "{}: the {} never changes, it is {} {} in every row: choose another column with --{}",
+            place, what, *least, unit, what);
+      }
+      if (half >= kSmallest && half <= kLargest) continue;
+      Refuse(
+          "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: choose other "
+          "units",
+          place, what, half, unit);
+    }
   }
-  // A gate is in SI units, as every option.
-  const std::optional<double>& gate = request.fit.preparation.reversal_gate;
-  const double range = 2 * (is_forced ? force : travel);
-  if (!gate || *gate < range) return;
-  const std::string_view unit = is_forced ? units.force : units.displacement;
-  Refuse(
-      "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
-      "give a smaller gate, in {}",
-      *gate, is_forced ? "force" : "motion", range, unit, unit);
 }
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
@@ -162,13 +136,6 @@ void AlignForceSigns(const loop::PreparationOptions& options, std::vector<Record
     notes.push_back(fmt::format("{}: the force is turned, as its sign is not that of {}", file.name,
                                 records.front().name));
   }
-}
-
-void RequireLoadsOf(std::size_t files, const FitRequest& request) {
-  const std::size_t loads = request.contact.normal_loads.size();
-  if (loads <= 1 || loads == files) return;
-  Refuse("--normal-load: {} loads for {} file{}: give one for all or one a file", loads, files,
-         files > 1 ? "s" : "");
 }
 
 /// Takes back a preference for the law that the program did not choose.
@@ -412,8 +379,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
 }
 
 void Validate(const FitRequest& request) {
-  Validate(request.contact);
-  RequireLoadsOf(request.files.size(), request);
+  Validate(request.contact, request.files.size());
   MakeFitOptions(request);
 }
 
@@ -452,18 +418,17 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
   if (inputs.empty()) Refuse("a fit needs a record: give one");
-  Validate(request.contact);
   FitOptions options = MakeFitOptions(request);
   if (const std::optional<Interval>& window = request.time_window) {
     for (RecordFile& input : inputs) io::KeepTimeWindow(input, window->lower, window->upper);
   }
-  RequireLoadsOf(inputs.size(), request);
+  Validate(request.contact, inputs.size());
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     Refuse(
         "--normal-load and other options that describe a contact do not apply to a torque against "
         "an angle: leave them out");
   }
-  RequireLoops(request, inputs);
+  RequireLoops(inputs);
   std::vector<std::string> files;
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {

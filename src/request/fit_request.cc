@@ -57,30 +57,14 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
 
 /// A start, a bound or a prior of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
-  const auto refuse = [&](std::string_view why) {
-    Refuse("{}: {} is not fitted, so this has no effect: {}", option, name, why);
-  };
-  if (fit.fixed.contains(name)) refuse("it is held at a value that is given; give one of the two");
-  if (name == "alpha" && fit.model != nullptr && fit.model->shape_exponent) {
-    refuse(fmt::format("--model {} prescribes it; use --model mindlin-dahl", fit.model->name));
-  }
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
   if (term == nullptr) return;  // the fit knows all names
-  if (term->presence == identification::Presence::kOffsets && !fit.offsets) {
-    refuse("--offsets off holds it at 0; use --offsets on");
-  }
-  const std::string_view origin =
-      fit.response() == loop::Channel::kForce ? "displacement_offset" : "force_offset";
-  if (term->name == origin && fit.initial_states == std::vector{models::InitialState::kSteady}) {
-    refuse("that of a steady loop is its centre; use --initial-state virgin");
-  }
-  const bool is_of_displacement = term->name == kDriftOfDisplacement;
-  if ((term->group.empty() && !is_of_displacement) || term->of_column) return;
-  if (std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
-  refuse(
-      term->name == "rig_stiffness"
-          ? std::string("add --rig-stiffness fit")
-          : fmt::format("add --terms {}", is_of_displacement ? kDriftOfDisplacement : term->group));
+  const bool is_added = term->group.empty() || term->of_column ||
+                        std::ranges::find(fit.terms, term->name) != fit.terms.end();
+  const bool is_prescribed = name == "alpha" && fit.model->shape_exponent;
+  if (is_added && !is_prescribed && !fit.fixed.contains(name)) return;
+  Refuse("{}: {} is not fitted, so this has no effect: leave it out, or add --terms NAME", option,
+         name);
 }
 
 }  // namespace

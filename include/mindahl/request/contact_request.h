@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,8 +28,10 @@ void SetNormalLoads(ContactOptions& options, std::span<const contact::UncertainV
 /// True if any of it was given.
 bool IsAnythingGiven(const ContactOptions& options);
 
-/// @throws InvalidArgument naming the option, its value and the rule
-void Validate(const ContactOptions& options);
+/// @param records  under these loads
+/// @throws InvalidArgument naming the option, its value and the rule, InputError where there are
+///   other loads than one for all or one a record
+void Validate(const ContactOptions& options, std::size_t records = 1);
 
 /// Predicts a contact that is described by friction and normal load with either contact radius and
 /// compliance or the materials and radii of both bodies; uncertain inputs make uncertain
