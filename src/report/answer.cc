@@ -71,7 +71,6 @@ class Writer {
     AddShape();
     AddLoad();
     AddTerms();
-    AddPriors();
     AddColumnsNotTried();
     AddLaw();
     Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
@@ -162,40 +161,14 @@ class Writer {
   }
 
   /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
-  /// their units stand in the line above. A unit in letters that were perhaps not understood, and
-  /// the encoding of a file of which a unit is assumed, are said in full always.
+  /// their units stand in the line above.
   void AddReading() {
-    const auto names_no_unit = [](const std::string& note) {
-      return note.find("no unit") != std::string::npos;
-    };
-    const bool has_units = std::ranges::any_of(report_.notes, names_no_unit);
-    std::vector<std::string> others;
-    for (const std::string& note : report_.notes) {
-      const bool is_foreign = std::ranges::any_of(note, [](char of) { return (of & 0x80) != 0; });
-      const bool is_encoding = has_units && note.find("is not UTF-8") != std::string::npos;
-      if (is_encoding || (is_foreign && names_no_unit(note))) {
-        Add("read as", note);
-      } else {
-        others.push_back(note);
-      }
-    }
-    if (others.size() <= 1) return Add("read as", others);
-    Add("read as",
-        fmt::format("{} assumptions{}: --details", others.size(),
-                    std::ranges::any_of(others, names_no_unit) ? ", units among them" : ""));
-  }
-
-  /// Returns what the column of the load says where another load was given; "" where they agree.
-  std::string OtherLoad(double given) {
-    constexpr double kAgree = 0.1;
-    double sum = 0.0;
-    double count = 0.0;
-    for (const io::RecordFile& file : report_.records) {
-      for (const double load : file.record.normal_load) sum += load;
-      count += static_cast<double>(file.record.normal_load.size());
-    }
-    if (count == 0 || std::abs(sum / count - given) <= kAgree * given) return "";
-    return fmt::format(" as given, not the {} of the load column", Quantity(sum / count, "N", 4));
+    const std::vector<std::string>& notes = report_.notes;
+    if (notes.size() <= 1) return Add("read as", notes);
+    const bool has_units = std::ranges::any_of(
+        notes, [](const std::string& note) { return note.find("no unit") != std::string::npos; });
+    Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
+                               has_units ? ", units among them" : ""));
   }
 
   void AddFriction() {
@@ -204,7 +177,7 @@ class Writer {
     std::string remark;
     if (load != nullptr && load->value &&
         !QuantityText(*report_.Find("friction_coefficient")).empty()) {
-      remark = fmt::format("at N = {}{}", Quantity(*load->value, "N", 4), OtherLoad(*load->value));
+      remark = "at N = " + Quantity(*load->value, "N", 4);
     } else if (load != nullptr && !load->value && slip_force.is_known()) {
       remark = "μ needs --normal-load";
     }
@@ -244,18 +217,6 @@ class Writer {
       if (!IsMoot(report_, *term)) terms.push_back(TextOf(term->name, *term));
     }
     Add("terms", terms);
-  }
-
-  /// Says what was given of parameters before the record: it is a part of their intervals.
-  void AddPriors() {
-    std::vector<std::string> priors;
-    priors.reserve(report_.options.priors.size());
-    for (const auto& [name, prior] : report_.options.priors) {
-      priors.push_back(fmt::format(
-          "{} {}", name,
-          QuantityWithError(prior.value, prior.standard_uncertainty, fit_.Find(name)->unit)));
-    }
-    Add("prior", priors);
   }
 
   /// Says which columns the choice of terms took for repeats of another: one may be the cause.

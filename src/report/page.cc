@@ -28,13 +28,6 @@ std::string LabelOf(const Report& report, std::size_t r) {
   return NameOf({&report.records[r].name, 1});
 }
 
-bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
-  const auto& window = report.options.preparation.load_window;
-  if (!window || record.normal_load.empty()) return true;
-  const double load = record.normal_load[sample];
-  return load >= window->lower && load <= window->upper;
-}
-
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
 constexpr std::size_t kMostNamed = 8;   // a legend of many files would be longer than the page
 
@@ -65,7 +58,6 @@ io::Plot ToPlot(const Report& report) {
                          std::optional<double> shade, std::size_t first = 0) {
       PlotSeries series{.label = std::move(name), .style = style, .shade = shade};
       for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
-        if (!IsUnderLoad(report, record, i)) continue;
         series.x.push_back(x[i]);
         series.y.push_back(y[i]);
       }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -106,7 +105,6 @@ std::string ImpossibleContact(const Report& report) {
   const std::string unit =
       is_friction_off ? fmt::format("the unit of the force, {}, or of the load", first.force.unit)
                       : fmt::format("the unit of the displacement, {}", first.displacement.unit);
-  const auto hertz_pressure = value_of(Kind::kHertzPressure);
   const auto ratio = value_of(Kind::kStiffnessRatio);
   if (ratio && (ratio->value > kMostOff || ratio->value < 1 / kMostOff)) {
     const double off = ratio->value > 1 ? ratio->value : 1 / ratio->value;
@@ -114,14 +112,12 @@ std::string ImpossibleContact(const Report& report) {
     return fmt::format("the contact radius{} is {:.0f} times {} than {}: look at {}",
                        radius ? ", " + Quantity(radius->value, "m", 3) + "," : "", off,
                        ratio->value > 1 ? "larger" : "smaller",
-                       hertz_pressure ? "Hertz's" : "the given one", unit);
+                       report.known.contact_radius ? "the given one" : "Hertz's", unit);
   }
-  for (const auto& [pressure, name, look_at] :
-       {std::tuple(hertz_pressure, "Hertz's pressure", std::string("the units of radius and load")),
-        {value_of(Kind::kMaximumPressure), "the maximum pressure", unit}}) {
-    if (!pressure || pressure->value <= kMostPressure) continue;
-    return fmt::format("{} is {}, more than any solid bears: look at {}", name,
-                       Quantity(pressure->value, "Pa", 3), look_at);
+  const auto pressure = value_of(Kind::kMaximumPressure);
+  if (pressure && pressure->value > kMostPressure) {
+    return fmt::format("the maximum pressure is {}, more than any solid bears: look at {}",
+                       Quantity(pressure->value, "Pa", 3), unit);
   }
   if (!is_friction_off || !report.fit.Find("slip_force")->is_known()) return "";
   return fmt::format("μ is {:.3g}: look at {}", friction, unit);
@@ -146,37 +142,6 @@ std::string DifferentLoads(const Report& report) {
                      report.is_torsional() ? "" : "different loads? --normal-load N1,N2,…; ");
 }
 
-/// Returns a question where half gaps over loads differ between files of a series by more than
-/// their loops can explain: of one μ the half gap over N grows with the slip, and no faster than
-/// the square of the half gap over the peak force, which no load enters.
-std::string LoadsOfOtherFiles(const Report& report) {
-  if (!report.fit.is_load_series()) return "";
-  if (report.fit.adequacy.verdict == AdequacyVerdict::kAdequate) return "";
-  const auto friction = [](const RecordFit& record) {
-    return std::abs(record.facts.half_gap.value_or(0.0)) / record.normal_load.value_or(1.0);
-  };
-  const auto fullness = [](const RecordFit& record) {
-    return std::abs(record.facts.half_gap.value_or(0.0)) / record.facts.peak_force;
-  };
-  double most = report.options.thresholds.other_test;
-  std::string question;
-  for (std::size_t a = 0; a < report.records.size(); ++a) {
-    for (std::size_t b = 0; b < report.records.size(); ++b) {
-      const RecordFit& less = report.fit.records[a];
-      const RecordFit& more = report.fit.records[b];
-      const double slips = std::max(1.0, fullness(more) / fullness(less));
-      const double ratio = friction(more) / friction(less) / (slips * slips);
-      if (!(ratio > most) || !std::isfinite(ratio)) continue;
-      most = ratio;
-      question = fmt::format(
-          "do the loads belong to these files? half gap / N is {:.2g} in {} and {:.2g} in {}",
-          friction(less), NameOf({&report.records[a].name, 1}), friction(more),
-          NameOf({&report.records[b].name, 1}));
-    }
-  }
-  return question;
-}
-
 std::string WhatToCheck(const Report& report) {
   if (!report.is_torsional()) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
@@ -186,8 +151,7 @@ std::string WhatToCheck(const Report& report) {
       return doubts.empty() ? found : doubts.front();
     }
   }
-  const std::string loads = LoadsOfOtherFiles(report);
-  return loads.empty() ? DifferentLoads(report) : loads;
+  return DifferentLoads(report);
 }
 
 }  // namespace

@@ -105,10 +105,9 @@ void RequireFitted(const Report& report, std::string_view what) {
 
 namespace {
 
-/// Sentences by the code of a finding. Of one that has a kind the row "code.kind" goes before that
-/// of its code, and where the record shows a loop that slides the row "code.slides", else where the
-/// least Tc is next to the largest force that was measured "code.near". Numbers of the
-/// finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
+/// Sentences by the code of a finding; of one that has a kind the row "code.kind" goes before that
+/// of its code. Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a
+/// unit.
 constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::string_view>>({
     // about the record
     {"reversals_uncertain",
@@ -130,10 +129,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination",
-     "only a combination of {parameters} is determined; fix one, or record a larger amplitude"},
-    {"undetermined_combination.slides",
-     "only a combination of {parameters} is determined; fix one, or sample more densely after the "
-     "reversals"},
+     "only a combination of {parameters} is determined; fix one, or record another amplitude"},
     {"sigma_not_identifiable",
      "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide{remedy}"},
     {"alpha_not_identifiable.wide",
@@ -143,12 +139,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
     {"asymmetry_not_identifiable", "the loop stays below slip"},
     {"slip_force_bounded_below",
-     "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
-     "plan says how far)"},
-    {"slip_force_bounded_below.near",
-     "whether it slips is not known: raise the amplitude until the force levels off (mindahl plan "
-     "says how far)"},
-    {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
+     "the force does not level off: raise the amplitude until it does (mindahl plan says how far)"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
@@ -164,12 +155,8 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},
-    {"initial_state_undecided.virgin",
-     "a contact that was at rest before the record fits as well, with Tc {slip_force:force}: give "
-     "--initial-state"},
     {"initial_state_undecided",
-     "a contact that had moved before the record fits as well, with Tc {slip_force:force}: give "
-     "--initial-state"},
+     "the other initial state fits as well, with Tc {slip_force:force}: give --initial-state"},
     {"noise_contradicted",
      "the residuals, {rms:force}, are far less than the noise of {given:force} that was given: "
      "look at its unit"},
@@ -177,8 +164,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses
     {"law_undecided", "the other law fits as well"},
-    {"other_law_fits_better.dahl", "Dahl's own law fits better: --model dahl"},
-    {"other_law_fits_better", "Masing's law fits better: --model mindlin-dahl"},
+    {"other_law_fits_better", "the other law fits better"},
     {"loop_not_seen",
      "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
      "columns?"},
@@ -217,32 +203,12 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
                                       : fmt::format("{:.2g}", number);
 }
 
-/// True if the least slip force is no more than 1.2 times the largest force of the widest record.
-bool IsNearSlip(const FitResult& fit) {
-  constexpr double kNear = 1.2;
-  const ParameterEstimate* slip_force = fit.Find("slip_force");
-  if (slip_force == nullptr || !slip_force->lower95) return false;
-  const ParameterEstimate* offset = fit.Find("force_offset");
-  const RecordFit& record = fit.WidestRecord();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < record.fitted_force.size(); ++i) {
-    const bool is_of_force = fit.response == loop::Channel::kForce;
-    const double force = record.fitted_force[i] - (is_of_force ? record.residual[i] : 0.0);
-    largest = std::max(largest, std::abs(force - (offset == nullptr ? 0.0 : offset->value)));
-  }
-  return *slip_force->lower95 <= kNear * largest;
-}
-
 }  // namespace
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;
-  const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
-  const bool is_limit = !fit.records.empty() && code == "slip_force_bounded_below";
-  const char* const state = slides ? "slides" : is_limit && IsNearSlip(fit) ? "near" : "";
   std::string_view text = code;
-  for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind),
-                                 fmt::format("{}.{}", code, state)}) {
+  for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind)}) {
     const auto row =
         std::ranges::find(kSentences, key, [](const auto& each) { return each.first; });
     if (row != kSentences.end()) text = row->second;

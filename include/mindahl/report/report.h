@@ -118,8 +118,7 @@ struct Provenance {
 /// not grow with the record.
 std::string ToPage(const Report& report, const Provenance& provenance = {});
 
-/// Plots the measured and fitted loop, with the residual along the displacement below: of samples
-/// in the load window where there is one.
+/// Plots the measured and fitted loop, with the residual along the displacement below.
 /// @throws InvalidArgument for a fit that failed
 io::Plot ToPlot(const Report& report);
 
