@@ -8,14 +8,12 @@
 #include <atomic>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
-#include <functional>
 #include <future>
 #include <new>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "core/probability.h"
 #include "io/source.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -28,7 +26,6 @@ namespace mindahl::request {
 using report::At;
 using report::Dump;
 using report::Json;
-using report::NumberOrNull;
 
 namespace {
 
@@ -89,46 +86,6 @@ Json RowOf(const BatchEntry& entry) {
 
 Json TableRows(std::span<const BatchEntry> entries) { return report::ListOf(entries, &RowOf); }
 
-/// Compares the scatter of repeats of a test with their stated errors.
-/// @param errors  by which they should scatter, > 0; none where they state none
-Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& errors,
-                std::string_view unit) {
-  const auto count = static_cast<double>(values.size());
-  const double mean = boost::math::statistics::mean(values);
-  const double deviation = std::sqrt(boost::math::statistics::sample_variance(values));
-  std::optional<double> stated;
-  std::optional<double> p_value;
-  std::string says = "without stated errors";
-  if (!errors.empty()) {
-    double squares = 0.0;
-    double weights = 0.0;
-    double weighted = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      squares += errors[k] * errors[k];
-      weights += 1 / (errors[k] * errors[k]);
-      weighted += values[k] / (errors[k] * errors[k]);
-    }
-    // P(χ²(n − 1) ≥ Σ((x − x̄)/e)²), x̄ weighted: chance of such a scatter from the stated errors.
-    double chi_squared = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const double off = (values[k] - weighted / weights) / errors[k];
-      chi_squared += off * off;
-    }
-    stated = std::sqrt(squares / count);
-    p_value = PValueOfChiSquared(chi_squared, count - 1);
-    constexpr double kChance = 0.01;
-    says = fmt::format("{}, {}", *p_value < kChance ? "more than the errors" : "as the errors say",
-                       report::ChanceText(*p_value, 2));
-  }
-  return {{"files", values.size()},
-          {"mean", mean},
-          {"standard_deviation", deviation},
-          {"stated_error", NumberOrNull(stated)},
-          {"p_value", NumberOrNull(p_value)},
-          {"unit", unit},
-          {"says", says}};
-}
-
 /// True if fits that are done are by several laws: parameters of one are no repeats of another's.
 bool HasSeveralLaws(const Json& table) {
   std::set<Json> laws;
@@ -141,40 +98,40 @@ bool HasSeveralLaws(const Json& table) {
 constexpr std::string_view kSeveralLaws =
     "fits are by several laws, whose parameters are not compared: --model NAME fits all by one";
 
-/// Returns what repeats of a test say of each quantity that two files or more have.
+/// Returns the scatter of each quantity that two files or more have, next to their stated errors:
+/// root mean square, null of what states none.
 Json RepeatRows(const Json& table) {
   const bool has_several_laws = HasSeveralLaws(table);
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
+    const std::string name(quantity.name);
+    const std::string parameter(quantity.parameter);
+    if (has_several_laws && !parameter.empty()) continue;
     std::vector<double> values;
-    std::vector<double> errors;  // by which repeats scatter
-    if (has_several_laws && !quantity.parameter.empty()) continue;
+    std::vector<double> squares;  // of the errors
     for (const Json& row : table) {
-      /// NaN where the row has none.
-      const auto number = [&](std::string_view name, const char* suffix) {
-        const Json value = row.value(fmt::format("{}{}", name, suffix), Json());
-        return value.is_number() ? value.get<double>() : std::nan("");
-      };
-      const double value = number(quantity.name, "");
-      const std::string_view parameter = quantity.parameter;
       const bool is_loop =
           row["warnings"].get_ref<const std::string&>().find("loop_not_seen") == std::string::npos;
-      if (!row["done"].get<bool>() || !is_loop || std::isnan(value)) continue;
+      if (!row["done"].get<bool>() || !is_loop || row[name].is_null()) continue;
+      const double value = row[name];
       if (!parameter.empty()) {
-        const Json& verdict = row[fmt::format("{}_verdict", parameter)];
+        const Json& verdict = row[parameter + "_verdict"];
         if (verdict == "bounded_below" || verdict == "not_identifiable") continue;
-        constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
-        // μ = Tc/N scatters as Tc does; a parameter at a bound has an interval only.
-        const double own = number(parameter, "_error") * (value / number(parameter, ""));
-        const double whole =
-            (number(quantity.name, "_upper95") - number(quantity.name, "_lower95")) / kWidth;
-        const double error = own > 0 ? own : whole;
-        if (!(error > 0)) continue;
-        errors.push_back(error);
+        const Json& error = row[parameter + "_error"];
+        // μ = Tc/N scatters as Tc does.
+        const double factor = value / row[parameter].get<double>();
+        if (!error.is_null()) squares.push_back(std::pow(error.get<double>() * factor, 2));
       }
       values.push_back(value);
     }
-    if (values.size() > 1) repeats[quantity.name] = RepeatsRow(values, errors, quantity.unit);
+    if (values.size() < 2) continue;
+    namespace statistics = boost::math::statistics;
+    repeats[name] = {
+        {"files", values.size()},
+        {"mean", statistics::mean(values)},
+        {"standard_deviation", std::sqrt(statistics::sample_variance(values))},
+        {"stated_error", squares.empty() ? Json() : Json(std::sqrt(statistics::mean(squares)))},
+        {"unit", quantity.unit}};
   }
   return repeats;
 }
