@@ -1,6 +1,5 @@
 #include <fmt/ranges.h>
 
-#include <array>
 #include <filesystem>
 #include <system_error>
 
@@ -49,14 +48,6 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
 }
 
 void RequireWritable(const std::string& option, const std::string& path) {
-  constexpr std::array<std::string_view, 11> kNotWritten = {
-      ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
-      ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
-  const std::string ending = LowerCase(fs::path(path).extension().string());
-  if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
-    Refuse("{}: '{}' would hold text, not what {} says: give it another name", option, path,
-           ending);
-  }
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     Refuse("{}: cannot write '{}': it is a directory", option, path);

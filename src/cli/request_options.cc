@@ -181,12 +181,11 @@ loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
   return {.first = count(first), .last = count(last)};
 }
 
-/// Holds a parameter at a value, unless another option did.
-void Hold(std::string_view option, const std::string& name, double value,
-          identification::FitOptions& fit) {
-  if (!fit.fixed.emplace(name, value).second) {
-    Refuse("{}: '{}' is given twice: give it once", option, name);
-  }
+/// Gives a parameter a value, unless it has one.
+template <typename Values, typename Value>
+void GiveOnce(std::string_view option, std::string_view name, const Value& value, Values& values) {
+  if (values.emplace(name, value).second) return;
+  Refuse("{}: '{}' is given twice: give it once", option, name);
 }
 
 /// Reads COL, COL=fit or COL=C.
@@ -198,8 +197,8 @@ void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
   }
   fit.covariates.push_back(text.substr(0, at));
   if (at == std::string::npos || text.substr(at + 1) == kFitIt) return;
-  Hold("--covariate", identification::NameOfCovariate(fit.covariates.back()),
-       ParseNumber(std::string_view(text).substr(at + 1), {"--covariate", kForm}), fit);
+  GiveOnce("--covariate", identification::NameOfCovariate(fit.covariates.back()),
+           ParseNumber(std::string_view(text).substr(at + 1), {"--covariate", kForm}), fit.fixed);
 }
 
 /// Reads fit, a number, or a number with its standard uncertainty.
@@ -212,7 +211,7 @@ void ReadRig(const std::string& text, identification::FitOptions& fit) {
   }
   const UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
   RequirePositive("--rig-stiffness [N/m]", stated.value);
-  if (stated.standard_error == 0) return Hold(kOption, kName, stated.value, fit);
+  if (stated.standard_error == 0) return GiveOnce(kOption, kName, stated.value, fit.fixed);
   fit.terms.emplace_back(kName);
   fit.priors[kName] = {stated.value, stated.standard_error};
 }
@@ -396,9 +395,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           for (const std::string& text : texts) {
             const auto [name, value] = Split(text, '=', {option, form});
             const Asked asked{option, form, UnitOf(name)};
-            if (!target.emplace(name, parse(value, asked)).second) {
-              Refuse("{}: '{}' is given twice: give it once", option, name);
-            }
+            GiveOnce(option, name, parse(value, asked), target);
           }
         },
         help, type);

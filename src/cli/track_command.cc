@@ -207,12 +207,6 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
 void RequireTrackOptions(const TrackCommandOptions& options) {
   MakeCycleFitOptions(options.fit);
   Validate(options.fit.contact);
-  std::error_code error;
-  const auto status = std::filesystem::status(options.output, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    Refuse("--output: {} is no file: rows are appended to the table, give the name of one",
-           options.output);
-  }
   if (options.resume || options.overwrite) return;
   RequireNotThere("--output", options.output, "--resume to go on with it, or --overwrite");
 }

@@ -1,10 +1,6 @@
 #include "mindahl/request/contact_request.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <cmath>
-#include <utility>
 
 #include "core/refuse.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
@@ -59,32 +55,17 @@ void Validate(const ContactOptions& options, std::size_t records) {
 
 contact::PredictedContact ResolveContact(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
-  std::vector<std::string> missing;
-  const auto need = [&](bool is_given, std::string option) {
-    if (!is_given) missing.push_back(std::move(option));
+  const auto is_whole = [](const KnownBody& body) {
+    return body.youngs_modulus && body.poisson_ratio && body.radius;
   };
-  need(options.friction_coefficient.has_value(), "--friction");
-  need(known.normal_load.has_value(), "--normal-load");
-  if (known.contact_radius || known.tangential_compliance) {
-    if (IsAnythingGiven(known.body_1) || IsAnythingGiven(known.body_2)) {
-      Refuse(
-          "a contact is described either by --contact-radius with --compliance or by the materials "
-          "and radii of its bodies: give one of the two");
-    }
-    need(known.contact_radius.has_value(), "--contact-radius");
-    need(known.tangential_compliance.has_value(), "--compliance");
-  } else {
-    for (const auto& [body, number] : {std::pair(&known.body_1, 1), {&known.body_2, 2}}) {
-      need(body->youngs_modulus.has_value(), fmt::format("--youngs-modulus-{}", number));
-      need(body->poisson_ratio.has_value(), fmt::format("--poisson-{}", number));
-      need(body->radius.has_value(), fmt::format("--radius-{}", number));
-    }
+  const bool by_radius = known.contact_radius && known.tangential_compliance;
+  const bool by_bodies = is_whole(known.body_1) && is_whole(known.body_2);
+  if (options.friction_coefficient && known.normal_load && by_radius != by_bodies) {
+    return contact::PredictContact(known, *options.friction_coefficient);
   }
-  if (missing.empty()) return contact::PredictContact(known, options.friction_coefficient.value());
   Refuse(
-      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
-      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
-      fmt::join(missing, ", "));
+      "a contact needs --friction, --normal-load and either --contact-radius with --compliance or "
+      "--youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2");
 }
 
 bool IsAnythingGiven(const LawRequest& request) {

@@ -42,9 +42,6 @@ void AddCompanionsOfFixed(FitOptions& fit) {
 void ApplyTerms(const FitRequest& request, FitOptions& fit) {
   const bool is_of_force = fit.response() == loop::Channel::kForce;
   for (const std::string& name : request.terms) {
-    if (std::ranges::count(request.terms, name) > 1) {
-      Refuse("--terms: '{}' is given twice: give it once", name);
-    }
     if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {

@@ -23,16 +23,6 @@ TEST_F(PlanCommand, ReportsAndDrawsTheAmplitudeThatReachesTheWantedPrecision) {
   EXPECT_GT(std::filesystem::file_size(Path("plan.svg")), 1000u);
 }
 
-TEST_F(PlanCommand, NotesWhatAFitWouldLeaveOpen) {
-  const auto note = [](const std::string& want) {
-    return RunCommand(Plan("--force-noise 0.4 --want " + want)).out;
-  };
-  EXPECT_THAT(note("slip_force=10%"), HasSubstr("note: a fit often leaves slip_force open where"));
-  EXPECT_THAT(note("slip_force=3"), HasSubstr("open where its standard error is above 2.8"));
-  EXPECT_THAT(note("alpha=20%"), HasSubstr("note: a fit often leaves alpha open"));
-  EXPECT_THAT(note("alpha=0.05,slip_force=7%"), Not(HasSubstr("note: a fit often")));
-}
-
 TEST_F(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
   const Outcome outcome = RunCommand(Plan("--force-noise 0.4 --want alpha=1e-6"));
   EXPECT_EQ(outcome.status, kNotEstablished);

@@ -173,7 +173,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
     (lambda: mindahl.simulate([0, "x"], sigma=1, slip_force=1), "dtype"),
     (lambda: mindahl.simulate([0, 1.0], sigma="stiff", slip_force=1), "sigma = 'stiff' is invalid"),
     (lambda: mindahl.ContactState(sigma=1, slip_force=1).move(np.nan), "displacement"),
-    (lambda: mindahl.contact(friction=0.3), "normal_load, youngs_modulus_1"),
+    (lambda: mindahl.contact(friction=0.3), "normal_load and either contact_radius"),
     (lambda: mindahl.contact(friction=-1, normal_load=1, contact_radius=1, compliance=1),
      r"friction \[-\] = -1 is invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="brass"),

@@ -36,7 +36,7 @@ void Validate(const ContactOptions& options, std::size_t records = 1);
 /// Predicts a contact that is described by friction and normal load with either contact radius and
 /// compliance or the materials and radii of both bodies; uncertain inputs make uncertain
 /// quantities.
-/// @throws InputError naming the options that are missing
+/// @throws InputError naming the options that are needed
 contact::PredictedContact ResolveContact(const ContactOptions& options);
 
 /// A branch law: by its parameters, or by a contact.
