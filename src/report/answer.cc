@@ -265,25 +265,20 @@ class Writer {
     const loop::LoopFacts& facts = widest.facts;
     const Units& units = report_.units;
     std::vector<std::string> parts;
-    if (facts.half_gap && facts.closed) {
-      parts.push_back("half gap " + QuantityWithError(*facts.half_gap,
-                                                      facts.half_gap_standard_deviation,
-                                                      units.force));
-    }
     if (facts.closed) {
+      if (facts.half_gap) {
+        parts.push_back("half gap " + QuantityWithError(*facts.half_gap,
+                                                        facts.half_gap_standard_deviation,
+                                                        units.force));
+      }
       parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
       parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
       parts.push_back(fmt::format("{} cycle{}", widest.measures.cycles,
                                   widest.measures.cycles == 1 ? "" : "s"));
       if (loop::Slides(facts)) parts.emplace_back("it slides");
-      const loop::PreparationOptions& selected = report_.options.preparation;
-      if (selected.cycles || selected.samples || selected.load_window) {
-        parts.emplace_back("of the whole record");
-      }
     } else {
-      parts.push_back("±" + Quantity(widest.measures.amplitude, units.displacement, 4));
-      parts.push_back("±" + Quantity(widest.measures.peak_force, units.force, 4));
-      parts.emplace_back("no closed cycle");
+      parts = {"±" + Quantity(widest.measures.amplitude, units.displacement, 4),
+               "±" + Quantity(widest.measures.peak_force, units.force, 4), "no closed cycle"};
     }
     if (fit_.is_load_series() && widest.normal_load) {
       parts.push_back("at N = " + Quantity(*widest.normal_load, "N", 4));

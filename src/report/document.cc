@@ -22,21 +22,6 @@ Json ColumnJson(const io::ChosenColumn& column) {
   return {{"name", column.name}, {"index", column.index}, {"unit", column.unit}};
 }
 
-Json Columns(const Report& report) {
-  const io::RecordFile& first = report.records.front();
-  return {{"displacement", ColumnJson(first.displacement)},
-          {"force", ColumnJson(first.force)},
-          {"time", ColumnJson(first.time)},
-          {"normal_load", ColumnJson(first.normal_load)}};
-}
-
-Json Samples(const Report& report) {
-  std::size_t samples = 0;
-  for (const io::RecordFile& file : report.records) samples += file.record.size();
-  for (const LeftOut& part : report.left_out) samples += part.samples;
-  return samples;
-}
-
 Json LeftOutJson(const Report& report) {
   const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
   return ListOf(DescribeLeftOut(report), [&](const LeftOut& part) -> Json {
@@ -181,8 +166,6 @@ using Reasons = std::map<std::string, std::string>;
 
 Reasons ReasonsOf(const Report& report) {
   if (report.failed()) return {{"", "the fit failed: " + report.fit.solver.message}};
-  constexpr const char* kNotTested =
-      "alpha is held, at a bound or not identifiable, or it is a torque";
   Reasons reasons = {
       {"", "not a finite number"},
       {"input.columns", "the file has none, or it is not used"},
@@ -191,16 +174,11 @@ Reasons ReasonsOf(const Report& report) {
       {"adequacy", "there are too few samples to identify anything in addition to the model"},
       {"adequacy.misfit_over_half_gap", "it is not judged, or no half gap is measured"},
       {"adequacy.causes", "no term takes it into account"},
-      {"measured", "no cycle is closed"},
-      {"measured.half_gap.standard_deviation",
-       "there are fewer than two cycles of the widest amplitude"},
-      {"measured.cycles", "the cycle does not show it"},
-      {"law.preferred", "the record does not distinguish the laws, or they are not compared"},
-      {"law.delta_aicc",
-       "both give the same steady loop of one amplitude, or they are not compared"},
-      {"mapping", kNotTested},
-      {"mapping.sigma_over_hertz_mindlin",
-       "as of contact.sigma_over_hertz_mindlin; not of a torque"},
+      {"measured", "no cycle shows it"},
+      {"measured.half_gap.standard_deviation", "of fewer than two cycles there is none"},
+      {"law", "the record does not distinguish the laws, or they are not compared"},
+      {"mapping", "alpha is held, at a bound or not identifiable, or it is a torque"},
+      {"mapping.sigma_over_hertz_mindlin", "as of the contact, which a torque has not"},
       {"compared", "there are no cycles to hold out, or a fit without them failed"},
       {"next", "nothing that was tried helps by a tenth"}};
   for (const ParameterEstimate& estimate : report.fit.parameters) {
@@ -251,6 +229,10 @@ Json DocumentOf(const Report& report) {
   const auto if_fitted = [&](double value) {
     return report.failed() ? Json() : NumberOrNull(value);
   };
+  const io::RecordFile& first = report.records.front();
+  std::size_t samples = 0;
+  for (const io::RecordFile& file : report.records) samples += file.record.size();
+  for (const LeftOut& part : report.left_out) samples += part.samples;
   std::size_t cycles = 0;
   std::size_t reversals = 0;
   for (const RecordFit& record : fit.records) {
@@ -269,8 +251,12 @@ Json DocumentOf(const Report& report) {
       {"version", Version()},
       {"input",
        {{"files", report.files()},
-        {"columns", Columns(report)},
-        {"samples", Samples(report)},
+        {"columns",
+         {{"displacement", ColumnJson(first.displacement)},
+          {"force", ColumnJson(first.force)},
+          {"time", ColumnJson(first.time)},
+          {"normal_load", ColumnJson(first.normal_load)}}},
+        {"samples", samples},
         {"cycles", cycles},
         {"reversals", reversals},
         {"left_out", LeftOutJson(report)}}},
@@ -329,26 +315,13 @@ Json ComparedModels(const Report& report) {
 std::vector<LeftOut> DescribeLeftOut(const Report& report) {
   std::vector<LeftOut> parts = report.left_out;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
-    const io::RecordFile& file = report.records[r];
     const RecordFit& fit = report.fit.records[r];
-    const auto add = [&](std::size_t samples, std::size_t first, bool are_in_a_row,
-                         const char* why) {
-      const auto line = [&](std::size_t sample) { return are_in_a_row ? file.LineOf(sample) : 0; };
-      if (samples == 0) return;
-      parts.push_back({.file = file.name,
-                       .samples = samples,
-                       .first = line(first),
-                       .last = line(first + samples - 1),
-                       .why = why});
-    };
     const std::size_t faults = fit.glitches.total;
-    const std::size_t rest = fit.left_out - std::min(fit.left_out, faults);
-    const auto first = std::ranges::find(fit.counts, 0);
-    const auto last =
-        std::find_if(first, fit.counts.end(), [](auto counts) { return counts != 0; });
-    add(faults, fit.glitches.first, faults == 1, "faults");
-    add(rest, static_cast<std::size_t>(first - fit.counts.begin()),
-        faults == 0 && static_cast<std::size_t>(last - first) == rest, "selection");
+    const std::size_t selected = fit.left_out - std::min(fit.left_out, faults);
+    const io::RecordFile& file = report.records[r];
+    const std::size_t line = faults == 1 ? file.LineOf(fit.glitches.first) : 0;
+    if (faults > 0) parts.push_back({file.name, faults, line, line, "faults"});
+    if (selected > 0) parts.push_back({file.name, selected, 0, 0, "selection"});
   }
   return parts;
 }

@@ -29,7 +29,6 @@ std::string LabelOf(const Report& report, std::size_t r) {
 }
 
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
-constexpr std::size_t kMostNamed = 8;   // a legend of many files would be longer than the page
 
 /// Returns where the last cycle of a record begins that is too long for all of its fit to be drawn:
 /// a line through some of its samples would cut corners.
@@ -52,7 +51,6 @@ io::Plot ToPlot(const Report& report) {
     const loop::Record& record = report.records[r].record;
     const RecordFit& fit = report.fit.records[r];
     const std::string label = LabelOf(report, r);
-    const bool is_named = records <= kMostNamed || r == 0 || r + 1 == records;
     const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
                          const std::vector<double>& x, const std::vector<double>& y,
                          std::optional<double> shade, std::size_t first = 0) {
@@ -65,11 +63,8 @@ io::Plot ToPlot(const Report& report) {
     };
     const std::optional<double> shade =
         records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
-    add(measured.series,
-        !is_named       ? ""
-        : label.empty() ? "measured"
-                        : label,
-        PlotStyle::kPoints, record.displacement, record.force, shade);
+    add(measured.series, label.empty() ? "measured" : label, PlotStyle::kPoints,
+        record.displacement, record.force, shade);
     const std::vector<double>& along_fit =
         fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
     const std::size_t first = FirstDrawn(fit);

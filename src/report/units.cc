@@ -87,17 +87,10 @@ std::string RoundedTo(double error, double value) {
   const double rounded = decimals < 0 ? std::round(value * scale) / scale : value;
   // Beyond these, zeros are counted.
   constexpr double kMostWritten = 1e6;
-  constexpr double kLeastWritten = 1e-4;
   constexpr int kMostDecimals = 9;
-  const double size = std::abs(rounded);
-  if ((size >= kMostWritten && decimals <= 0) ||
-      (size < kLeastWritten && size > 0 && decimals > kMostDecimals)) {
-    constexpr int kMostDigits = 5;  // of one that is small
-    const int digits = static_cast<int>(std::floor(std::log10(size))) + decimals;
-    return fmt::format("{:.{}e}", rounded,
-                       std::max(0, size < 1 ? std::min(digits, kMostDigits) : digits));
+  if ((std::abs(rounded) >= kMostWritten && decimals <= 0) || decimals > kMostDecimals) {
+    return fmt::format("{:.5g}", value);
   }
-  if (decimals > kMostDecimals) return fmt::format("{:.6g}", value);
   std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
   if (text.find_first_not_of("-0.") == std::string::npos) text.erase(0, text.find('0'));
   return text;

@@ -298,14 +298,6 @@ TEST(Answer, HasATermOnceInAnswerAndDetails) {
   EXPECT_EQ(text.find("viscous"), text.rfind("viscous")) << text;
 }
 
-TEST(Answer, SaysThatTheMeasureIsOfTheWholeRecordWhereAPartIsFitted) {
-  ReportInput input = Doubtful();
-  input.fit.records[0].facts = Facts(10.0);
-  EXPECT_THAT(LineOf(input, "measured"), Not(HasSubstr("whole record")));
-  input.options.preparation.cycles = loop::CountRange{.first = 2, .last = 3};
-  EXPECT_THAT(LineOf(input, "measured"), EndsWith("of the whole record"));
-}
-
 TEST(Answer, NamesTheColumnsThatWereTakenForRepeats) {
   ReportInput input = Doubtful();
   input.terms.emplace();

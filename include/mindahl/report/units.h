@@ -54,8 +54,8 @@ void ScaleAxes(io::PlotPanel& panel, std::string_view x_name, std::string_view x
 /// Returns "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
 std::string Quantity(double value, std::string_view unit, int digits = 5);
 
-/// Rounds a number to the decimals that give its error two digits: "48.142" of 0.0391; from a
-/// million on with an exponent, "5.002e+16" of 1.2e14, and where it is small, "4.207e-11" of 7e-14.
+/// Rounds a number to the decimals that give its error two digits: "48.142" of 0.0391; to five
+/// digits where that would count zeros, "5.0016e+16".
 /// @param error  > 0; where it is not, or not finite, the number has six digits
 std::string RoundedTo(double error, double value);
 
