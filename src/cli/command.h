@@ -40,9 +40,9 @@ using request::Strictness;
 // --- adding commands and options
 
 /// Adds a command to the program.
-/// @param examples  lines to copy at the end of its help, before what ends every help.
-///   tests/cli/help_text.py runs each, and makes the records that they name. A line that continues
-///   the last one begins with blanks.
+/// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
+/// continues
+///   the last begins with blanks
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
                      std::initializer_list<std::string_view> examples);
 
@@ -123,13 +123,11 @@ class OptionGroup {
   std::string name_;
 };
 
-/// The group of options that belong to none.
 inline constexpr const char* kPlainGroup = "Options";
 
-/// Returns the options of a command in the order in which they were added, without words that are
-/// no options.
+/// Returns the options of a command in their order, without words that are no options.
 std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
-/// Returns the name of one of these, without its dashes.
+/// Returns the name of one, without its dashes.
 inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
 
 /// Reads a number > 0, "0.01", or the same in percent, "1%"; empty where the text is neither.
@@ -144,7 +142,6 @@ void AddTolerance(const OptionGroup& group, double& tolerance, const std::string
 CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column,
                      const std::string& remark);
 
-/// Adds --threads.
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
 
 // --- options that make a request: for a contact, for a law, and for a fit
@@ -157,32 +154,27 @@ void AddThreads(const OptionGroup& group, std::size_t& threads, const std::strin
 contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
                                             std::string_view unit);
 
-/// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
-/// Each takes a standard uncertainty.
-/// @param options  must outlive the application
+/// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance, each
+/// with a standard uncertainty.
 void AddContactOptions(CLI::App& command, ContactOptions& options);
 
-/// Adds --friction. As above it takes a standard uncertainty.
+/// Adds --friction, likewise.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
 
 /// Adds --sigma, --alpha and --slip-force.
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
 
 /// Adds these and what describes a contact, --friction included.
-/// @param request  must outlive the application
 void AddLawOptions(CLI::App& command, LawOptions& request);
 
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
 /// slip is only approached.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
-void AddFitOptions(CLI::App& command, FitRequest& request);
-
-/// Adds the options that say which columns of a record are read, and in what unit.
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
-
-/// Adds the options of the model that is fitted to them.
 void AddModelOptions(CLI::App& command, FitRequest& request);
+/// Adds those of columns, of the model and of the contact, and which samples count.
+void AddFitOptions(CLI::App& command, FitRequest& request);
 
 /// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
 /// @param otherwise  what happens to a fit that is not: "exit status 3"
@@ -220,10 +212,10 @@ void RequireDistinctFiles(std::span<const std::string> files);
 /// @throws InputError where a file is there
 void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy);
 
-/// A word as a shell takes it: in single quotes where it needs them.
+/// Returns a word as a shell takes it: in single quotes where it needs them.
 std::string ShellWord(std::string_view word);
 
-/// The command line as a shell takes it, the program by its own name.
+/// Returns the command line as a shell takes it, the program by its own name.
 std::string CommandLine(int argc, const char* const* argv);
 
 /// Returns what is needed to make a result again: the command line, and digests of the files.

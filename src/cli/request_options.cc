@@ -1,7 +1,6 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <map>
 
 #include "cli/command.h"
 #include "core/text.h"
@@ -94,9 +93,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options) {
   AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "m",
            "M");
   AddKnown(command, "--compliance", options.known.tangential_compliance,
-           "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance (many texts write G* for its "
-           "inverse)",
-           "1/Pa", "1/PA");
+           "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance", "1/Pa", "1/PA");
 }
 
 void AddFrictionOption(CLI::App& command, ContactOptions& options) {
@@ -279,8 +276,7 @@ void AddSelections(CLI::App& command, FitRequest& request) {
 }
 
 std::string DescribeModels() {
-  std::string text =
-      "law of the friction; auto: mindlin-dahl or dahl, whichever the record supports";
+  std::string text = "law of the friction; auto: mindlin-dahl or dahl, by the record";
   for (const models::FrictionModel& model : models::FrictionModels()) {
     text += fmt::format("\n{}: {}", model.name, model.title);
   }
@@ -318,24 +314,18 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const OptionGroup group(command, kColumnGroup);
   group.Add("--displacement", columns.displacement,
             "displacement column: header name or number from 1, with its unit if\nthe header has "
-            "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
-            "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; found from names,\nunits and "
-            "numbers by default; m, cm, mm, um, nm, in, or "
-            "rad, deg",
+            "none, \"3 [mm]\"; or a sum of columns with factors and an\noffset, "
+            "\"raw*0.0123-4.5 [mm]\"; found by default; mm, um, in, deg …",
             "COL");
   group.Add("--force", columns.force,
-            "force column, likewise: \"cell1+cell2\"; N, mN, uN, kN, lbf, kgf; of a\ntorque 'N m', "
-            "'N mm'",
-            "COL");
+            "force column, likewise: \"cell1+cell2\"; N, mN, uN, kN, lbf, kgf, N m", "COL");
   group.Add("--time", columns.time, "time column, likewise; optional", "COL");
   group.Add("--normal-load-column", columns.normal_load,
             "normal load column, likewise; none: leave it out", "COL");
   group.Add("--sample-rate", columns.sample_rate, "samples a second [Hz], where there is no time",
             "HZ");
   group.Add("--encoding", columns.encoding,
-            "encoding of the files, as iconv names it [latin1, sjis, utf-16le];\ndefault UTF-8, or "
-            "found from their first bytes",
-            "NAME");
+            "encoding of the files, as iconv names it [latin1]; default found", "NAME");
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
@@ -352,33 +342,26 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   {{"auto", {}},
                    {"virgin", {models::InitialState::kVirgin}},
                    {"steady", {models::InitialState::kSteady}}},
-                  "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
-                  "auto fits both and keeps the smaller AICc");
+                  "virgin: the record starts from an unloaded contact; steady: from a\ncycled one");
   group.AddChoice("--force-sign", fit.preparation.force_sense,
                   {{"auto", {}}, {"same", 1}, {"opposite", -1}},
-                  "sign of the force in the file relative to the displacement; auto\ndecides by "
-                  "the sign of the loop's energy");
+                  "sign of the force in the file; auto: by that of the loop's energy");
   group.AddChoice(
       "--noise-in", fit.preparation.excitation,
       {{"force", loop::Channel::kDisplacement}, {"displacement", loop::Channel::kForce}},
-      "channel that has the noise and is fitted; the other one is taken as\nexact: give "
-      "displacement where the machine imposes the force");
+      "channel that has the noise and is fitted; the other one is exact");
   group.AddChoice("--offsets", fit.offsets, {{"on", true}, {"off", false}},
                   "fit offsets of force and displacement");
   group.AddRead(
       "--rig-stiffness", [&fit](const std::string& text) { ReadRig(text, fit); },
-      "stiffness of the rig in series with the contact [N/m], or fit;\nK+-U or K+-3%: fitted about "
-      "K with standard uncertainty U; default rigid",
-      "K[+-U]|fit");
+      "stiffness of the rig in series [N/m]; K+-U or K+-3% fits it about K", "K[+-U]|fit");
   group
       .AddRead<std::vector<std::string>>(
           "--covariate",
           [&fit](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) ReadCovariate(text, fit);
           },
-          "additional force C·column, C [N/unit]; default fit; columns by header\nname or 1-based "
-          "number; repeatable",
-          "COL[=C|fit]")
+          "additional force C·column, C [N/unit], by default fitted; repeatable", "COL[=C|fit]")
       ->allow_extra_args(false);
   group
       .AddRead<std::vector<std::string>>(
@@ -406,25 +389,21 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   "start the search from a value instead of the data's");
   add_assignments("--bound", fit.bounds, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2", &ParseInterval,
                   "keep a parameter between two values");
-  add_assignments(
-      "--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%", &ParsePrior,
-      "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
+  add_assignments("--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
+                  &ParsePrior,
+                  "prior value and standard uncertainty of a parameter, in its unit [SI]");
   group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
   group.AddQuantity("--force-noise", fit.force_noise,
                     "known standard deviation of the force [N]; default from the residuals", "N",
                     "N");
-  group.AddQuantity(
-      "--displacement-noise", fit.preparation.displacement_noise,
-      "known standard deviation of the displacement [m]; default from the\ndata where they "
-      "show any",
-      "M", "m");
+  group.AddQuantity("--displacement-noise", fit.preparation.displacement_noise,
+                    "known standard deviation of the displacement [m]; default its own", "M", "m");
   group.AddChoice("--loss", fit.loss,
                   {{"none", identification::Loss::kNone},
                    {"huber", identification::Loss::kHuber},
                    {"cauchy", identification::Loss::kCauchy},
                    {"tukey", identification::Loss::kTukey}},
-                  "weight of residuals that are large against their scatter: huber and\ncauchy "
-                  "reduce it, tukey reduces it to zero");
+                  "weight of residuals that are large against their scatter");
   group.AddQuantity("--reversal-gate", fit.preparation.reversal_gate,
                     "excursions up to this [m] are noise, not reversals; default from the\ndata",
                     "M", "m");
@@ -436,30 +415,20 @@ void AddFitOptions(CLI::App& command, FitRequest& request) {
   const OptionGroup group(command, kColumnGroup);
   io::RecordColumns& columns = request.columns;
   group.Add("--with", columns.with,
-            "another file of the same test, whose columns follow those of the file:\nby time "
-            "where both have one, else row by row",
-            "FILE");
-  group.AddChoice(
-      "--broken-rows", columns.skip_broken_rows, {{"refuse", false}, {"skip", true}},
-      "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
-      "empty cells, which are left out; skip: all are left out");
+            "another file of the same test, whose columns follow those of the file", "FILE");
+  group.AddChoice("--broken-rows", columns.skip_broken_rows, {{"refuse", false}, {"skip", true}},
+                  "rows without a number in a needed column; skip leaves all out");
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact);
 }
 
 void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {
-  // A configuration has `strict = true`.
-  static const std::map<std::string, Strictness> levels = {{"adequate", Strictness::kAdequate},
-                                                           {"true", Strictness::kAdequate},
-                                                           {"doubtful", Strictness::kDoubtful},
-                                                           {"false", Strictness::kNone}};
   const auto read = [&strictness](const std::string& given) {
-    const auto level = levels.find(given);
-    if (level == levels.end()) {
-      Refuse("--strict: '{}' is no verdict: give --strict for adequate, or --strict=doubtful",
-             given);
-    }
-    strictness = level->second;
+    RequireOneOf("--strict", given,
+                 std::vector<std::string_view>{"adequate", "doubtful", "true", "false"});
+    strictness = given == "doubtful" ? Strictness::kDoubtful
+                 : given == "false"  ? Strictness::kNone
+                                     : Strictness::kAdequate;  // strict = true of a configuration
   };
   group.AddFlagWithWord("--strict{adequate}", read,
                         otherwise +

@@ -472,8 +472,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   cycles.AddCount("--every", options->track.every, "fit only one cycle of this many");
   cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
-                   "refuse: a row without a number in a needed column ends the run; skip:\nit is "
-                   "skipped and counted");
+                   "rows without a number in a needed column; skip counts them");
   AddThreads(cycles, options->track.threads, "the table");
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")

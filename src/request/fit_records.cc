@@ -120,24 +120,6 @@ void KeepTests(const FitRequest& request, std::vector<RecordFile>& records, FitO
   }
 }
 
-/// Turns the force of records whose sign is not that of the first, unless a sign is given.
-void AlignForceSigns(const loop::PreparationOptions& options, std::vector<RecordFile>& records,
-                     std::vector<std::string>& notes) {
-  if (options.force_sense || records.size() < 2) return;
-  std::optional<int> first;
-  for (RecordFile& file : records) {
-    const loop::RecordView record(file.record);
-    const int sign = loop::Prepare({&record, 1}, options).force_sense;
-    if (sign == first.value_or(sign)) {
-      first = sign;
-      continue;
-    }
-    for (double& force : file.record.force) force = -force;
-    notes.push_back(fmt::format("{}: the force is turned, as its sign is not that of {}", file.name,
-                                records.front().name));
-  }
-}
-
 /// Takes back a preference for the law that the program did not choose.
 /// @returns true where there was one
 bool WithdrawPreference(FitResult& fit) {
@@ -438,7 +420,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::vector<report::LeftOut> left_out;
   inputs = SplitLoads(request, std::move(inputs), left_out);
   KeepTests(request, inputs, options, left_out);
-  AlignForceSigns(options.preparation, inputs, notes);
   std::vector<Record> records;
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);

@@ -21,8 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"fit": 4, "simulate": 2, "contact": 1, "tradeoff": 2, "convert": 1,
-                   "plan": 1, "track": 4, "batch": 4}  # those that it shares with fit
+WIDE_LINES_LEFT = {"fit": 1, "simulate": 1, "tradeoff": 1, "convert": 1,
+                   "track": 1, "batch": 1}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")

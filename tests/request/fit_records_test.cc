@@ -46,15 +46,6 @@ TEST(FitRecords, RefusesADisplacementAndAForceThatNeverChange) {
               StartsWith("b.csv:3:4: the force never changes, it is -7 N"));
 }
 
-TEST(FitRecords, TurnsTheForceOfAFileWhoseSignIsTheOther) {
-  io::RecordFile opposite = LoopFile();
-  opposite.name = "b.csv";
-  for (double& force : opposite.record.force) force = -force;
-  const report::Report made = FitRecords({}, {LoopFile(), opposite});
-  EXPECT_NEAR(made.fit.law.slip_force, 40.0, 0.5);
-  EXPECT_THAT(made.notes, Contains(StartsWith("b.csv: the force is turned")));
-}
-
 /// Sine cycles of a contact at which a force is added, in files a.csv, b.csv, …
 report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitRequest& request,
                         const std::function<double(double)>& distort = std::identity()) {
