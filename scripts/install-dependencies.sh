@@ -31,7 +31,7 @@ for group in "$@"; do
     --checks) packages+=(clang-format doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers)
-      packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox)
+      packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps gnuplot-nox)
       command -v npm >/dev/null || packages+=(nodejs npm)
       node_packages+=(@mujoco/mujoco@3)  # no Debian package: Google's WebAssembly build
       ;;

@@ -132,18 +132,16 @@ def convert(
     sigma [N/m], alpha [-] (1/3), slip_force Tc [N]: parameters of the law from_, "masing" (default)
         or "dahl".
     amplitude: X [m] of the contact's steady loop.
-    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts", "yade",
-        "mujoco", "mujoco-joint", "urdf" or "sdf".
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps" or "mujoco".
     tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
-    normal_load [N]: for "lammps", "liggghts", "yade". contact_radius [m]: for "lammps".
-    viscous [N s/m]: for "lugre" and the four laws of robots.
+    normal_load [N], contact_radius [m]: for "lammps". viscous [N s/m]: for "lugre", "mujoco".
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
-        None for codes of discrete elements without a normal load.
+        None for "lammps" without a normal load.
     Raises ValueError naming the quantity, its value and the rule.
     """
     given = dict(locals())
     del given["fit"]
-    has_lines = to not in ("lammps", "liggghts", "yade") or normal_load is not None
+    has_lines = to != "lammps" or normal_load is not None
     answer, lines = ask("convert", words(given), [] if fit is None else [("", fit)],
                         ["input-lines"] if has_lines else [])
     conversion = Conversion(*answer, "conversion")

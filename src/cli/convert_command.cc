@@ -204,15 +204,12 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.AddQuantity("--normal-load", options->normal.normal_load,
-                     "normal load [N] for --to lammps, liggghts and yade: friction\n"
-                     "coefficient Tc/N",
+                     "normal load [N] for --to lammps: friction coefficient Tc/N",
                      "N", "N");
   result.AddQuantity("--contact-radius", options->normal.contact_radius,
                      "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
-  result.Add(
-      "--viscous", options->normal.viscous,
-      "force per speed [N s/m], by default the fit's: lugre, mujoco,\nmujoco-joint, urdf, sdf",
-      "C");
+  result.Add("--viscous", options->normal.viscous,
+             "force per speed [N s/m], by default the fit's, for --to lugre and mujoco", "C");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");

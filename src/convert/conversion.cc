@@ -19,10 +19,6 @@ using models::FindFrictionModel;
 
 namespace {
 
-constexpr ParameterRow kDamping = {"damping", "viscous", "N s/m", "force per speed"};
-constexpr ParameterRow kSlipForce = {"slip_force", "Tc", "N", "Coulomb's limit"};
-constexpr ParameterRow kFriction = {"mu", "mu", "-", "friction, Tc/N"};
-
 constexpr std::array kMasing = {
     ParameterRow{"sigma", "k", "N/m", "stiffness at the start of a branch"},
     ParameterRow{"alpha", "alpha", "-", "shape exponent"},
@@ -43,25 +39,15 @@ constexpr std::array kBoucWen = {ParameterRow{"k", "k", "N/m", "stiffness k of f
 constexpr std::array kElements = {ParameterRow{"sigma", "k", "N/m", "sum of the stiffnesses"},
                                   ParameterRow{"slip_force", "Tc", "N", "sum of the slip forces"}};
 constexpr std::array kLammps = {ParameterRow{"kt", "k", "N/m", "of tangential linear_history"},
-                                kSlipForce,
+                                ParameterRow{"slip_force", "Tc", "N", "Coulomb's limit"},
                                 ParameterRow{"kt_mindlin", "k_per_a", "Pa",
                                              "kt of tangential mindlin, whose stiffness is kt a"},
-                                kFriction};
-constexpr std::array kLiggghts = {
-    ParameterRow{"kt", "k", "N/m", "kt of hooke/stiffness, tangential history"}, kSlipForce,
-    kFriction};
-constexpr std::array kYade = {ParameterRow{"ks", "k", "N/m", "of FrictPhys"}, kSlipForce, kFriction,
-                              ParameterRow{"friction_angle", "angle", "rad", "atan(Tc/N)"}};
+                                ParameterRow{"mu", "mu", "-", "friction, Tc/N"}};
 constexpr std::array kMujoco = {
     ParameterRow{"stiffness", "k", "N/m", "bristles' stiffness"},
     ParameterRow{"coulomb", "Tc", "N", "Coulomb's force; static force the same"},
     ParameterRow{"knee", "knee", "m", "h of a plugin's dz/dt = (v - |v| z)/h, force = Fc z"},
-    kDamping};
-constexpr std::array kMujocoJoint = {
-    ParameterRow{"frictionloss", "Tc", "N", "mean force of a stroke"}, kDamping,
-    ParameterRow{"creep", "creep", "-", "creep speed under a constant force T, over T h/M"}};
-constexpr std::array kJoint = {ParameterRow{"friction", "Tc", "N", "mean force of a stroke"},
-                               kDamping};
+    ParameterRow{"damping", "viscous", "N s/m", "force per speed"}};
 
 using Lines = std::string_view;
 constexpr std::array<Lines, 1> kMasingLines = {
@@ -80,32 +66,12 @@ constexpr std::array<Lines, 3> kLammpsLines = {
     "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
     "tangential linear_history {k} 0.0 {mu}",
     "tangential mindlin {k_per_a} 0.0 {mu}  # instead, where the radius changes with the load"};
-constexpr std::array<Lines, 5> kLiggghtsLines = {
-    "# LIGGGHTS, in SI units; kn and gamman are yours",
-    "pair_style gran model hooke/stiffness tangential history",
-    "fix kt all property/global kt peratomtypepair 1 {k}",
-    "fix gammat all property/global gammat peratomtypepair 1 0.0",
-    "fix mu all property/global coefficientFriction peratomtypepair 1 {mu}"};
-constexpr std::array<Lines, 2> kYadeLines = {
-    "# YADE, with Law2_ScGeom_FrictPhys_CundallStrack, in SI units; kn is yours",
-    "Ip2_FrictMat_FrictMat_FrictPhys(ks=MatchMaker(algo='val', val={k}), "
-    "frictAngle=MatchMaker(algo='val', val={angle}))"};
 constexpr std::array<Lines, 3> kMujocoLines = {
     "<!-- MuJoCo, in actuator: the joint's friction, a motor without input; lugre is -->",
     "<!-- stiffness, damping, Coulomb's force; motorconst^2/resistance is the damping -->",
     "<dcmotor joint=\"joint\" input=\"none\" motorconst=\"1\" resistance=\"{resistance}\" "
     "lugre=\"{k} 0 {Tc}\"/>"};
-constexpr std::array<Lines, 3> kMujocoJointLines = {
-    "<!-- MuJoCo; type, axis and armature are yours; the engine raises the time constant -->",
-    "<!-- of solreffriction to two time steps -->",
-    "<joint name=\"joint\" type=\"slide\" frictionloss=\"{Tc}\" damping=\"{viscous}\" "
-    "solreffriction=\"1e-06 1\" solimpfriction=\"{impedance} {impedance} 0.001\"/>"};
-constexpr std::array<Lines, 1> kUrdfLines = {"<dynamics damping=\"{viscous}\" friction=\"{Tc}\"/>"};
-constexpr std::array<Lines, 1> kSdfLines = {
-    "<dynamics><damping>{viscous}</damping><friction>{Tc}</friction></dynamics>"};
 
-constexpr std::string_view kSpringTitle = "a tangential spring with Coulomb's limit";
-constexpr std::string_view kJointTitle = "Coulomb's friction of a joint";
 constexpr std::array kTargets = {
     TargetRow{"masing", "Masing's law (mindlin-dahl)", Form::kMasing, kMasing, kMasingLines},
     TargetRow{"dahl", "Dahl's own law", Form::kDahl, kDahl, kDahlLines},
@@ -114,15 +80,10 @@ constexpr std::array kTargets = {
     TargetRow{"bouc-wen", "Bouc's and Wen's law", Form::kBoucWen, kBoucWen, kBoucWenLines, "# "},
     TargetRow{"iwan", "Jenkins elements in parallel", Form::kElements, kElements, kElementLines,
               "# "},
-    TargetRow{"lammps", kSpringTitle, Form::kSpring, kLammps, kLammpsLines, "# "},
-    TargetRow{"liggghts", kSpringTitle, Form::kSpring, kLiggghts, kLiggghtsLines, "# "},
-    TargetRow{"yade", kSpringTitle, Form::kSpring, kYade, kYadeLines, "# "},
+    TargetRow{"lammps", "a tangential spring with Coulomb's limit", Form::kSpring, kLammps,
+              kLammpsLines, "# "},
     TargetRow{"mujoco", "MuJoCo's LuGre without rate: Dahl's law of α = 1", Form::kExponential,
               kMujoco, kMujocoLines, "<!-- ", " -->"},
-    TargetRow{"mujoco-joint", kJointTitle, Form::kCoulomb, kMujocoJoint, kMujocoJointLines, "<!-- ",
-              " -->"},
-    TargetRow{"urdf", kJointTitle, Form::kCoulomb, kJoint, kUrdfLines, "<!-- ", " -->"},
-    TargetRow{"sdf", kJointTitle, Form::kCoulomb, kJoint, kSdfLines, "<!-- ", " -->"},
 };
 
 SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& options) {
@@ -146,16 +107,9 @@ SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& opt
     case Form::kElements:
       return methods::MakeIwanElements(masing_law(), options.elements);
     case Form::kSpring:
-      return ModelLaw{&masing, SamePeakAndEnergy(contact, amplitude, masing, 0.0)};
-    case Form::kCoulomb:
       break;
   }
-  constexpr double kElastic = 1e-13;  // of the amplitude: what slips later is rounding
-  const double friction = LoopOf(contact, amplitude).energy / (4 * amplitude);
-  if (!(friction > 0)) {
-    throw InvalidArgument("the contact sticks at this amplitude: Coulomb's friction would be 0");
-  }
-  return ModelLaw{&masing, {friction / (kElastic * amplitude), 0.0, friction}};
+  return ModelLaw{&masing, SamePeakAndEnergy(contact, amplitude, masing, 0.0)};
 }
 
 /// Finds where the error passes the tolerance, from X on in steps of a factor that grows or falls.
@@ -182,15 +136,12 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
 /// Returns the values of a conversion that are known, by their keys.
 std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
                                             const NormalContact& contact) {
-  constexpr double kLargestImpedance = 0.9999;  // mjMAXIMP: least creep of MuJoCo's constraints
-  constexpr double kNoDamping = 1e15;           // [Ω], a resistance: damping of 1e-15 N s/m
+  constexpr double kNoDamping = 1e15;  // [Ω], a resistance: damping of 1e-15 N s/m
   std::map<std::string_view, double> values = {
       {"zero", 0.0},
       {"one", 1.0},
       {"viscous", contact.viscous},
-      {"resistance", contact.viscous > 0 ? 1 / contact.viscous : kNoDamping},
-      {"impedance", kLargestImpedance},
-      {"creep", 1 - kLargestImpedance}};
+      {"resistance", contact.viscous > 0 ? 1 / contact.viscous : kNoDamping}};
   double stiffness = 0.0;
   double slip_force = 0.0;
   if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&conversion.law)) {
@@ -216,10 +167,7 @@ std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
   values["Tc"] = slip_force;
   values["knee"] = slip_force / stiffness;
   if (contact.contact_radius) values["k_per_a"] = stiffness / *contact.contact_radius;
-  if (contact.normal_load) {
-    values["mu"] = slip_force / *contact.normal_load;
-    values["angle"] = std::atan(values["mu"]);
-  }
+  if (contact.normal_load) values["mu"] = slip_force / *contact.normal_load;
   return values;
 }
 
@@ -289,9 +237,7 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRo
 std::vector<std::string> InputLines(const Conversion& conversion, const TargetRow& target,
                                     const NormalContact& contact, std::string_view remark) {
   if (target.Uses("mu") && !contact.normal_load) {
-    throw InputError(
-        "--input-lines of a discrete-element code needs --normal-load: its friction coefficient is "
-        "Tc/N");
+    throw InputError("--input-lines for LAMMPS need --normal-load: friction coefficient Tc/N");
   }
   fmt::dynamic_format_arg_store<fmt::format_context> store;
   for (const auto& [key, value] : ValuesOf(conversion, contact)) {

@@ -66,7 +66,7 @@ TEST_F(Units, FollowAQuantityOfAnOption) {
 }
 
 TEST_F(Units, OfAConversionAreThoseOfItsParameters) {
-  for (const char* target : {"dahl", "iwan", "lugre", "lammps", "urdf"}) {
+  for (const char* target : {"dahl", "iwan", "lugre", "lammps"}) {
     const auto convert = [&](const UnitScale& scale) {
       return JsonOf(fmt::format("convert --to {} --sigma {} --slip-force {} --amplitude {}", target,
                                 4e7 * scale.Of("N/m"), 40 * scale.force, 1.2e-6 * scale.length));

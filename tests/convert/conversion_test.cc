@@ -88,22 +88,6 @@ TEST(Conversion, HasThePeakForceAndTheEnergyOfTheContact) {
   }
 }
 
-TEST(Conversion, ToCoulombsFrictionLosesTheEnergyOfTheLoopAndNoPresliding) {
-  // A rectangle of height F differs by F + T* after a reversal.
-  constexpr double kElastic = 1e-12;  // ten times what a spring of 1e-13·X leaves
-  const double energy = LoopOf(kMindlin, kAmplitude).energy;
-  const double peak = models::SteadyPeakForce(*kMindlin.model, kMindlin.law, kAmplitude);
-  for (const char* target : {"mujoco-joint", "urdf", "sdf"}) {
-    const Conversion joint = To(target, kMindlin);
-    const double friction = std::get<ModelLaw>(joint.law).law.slip_force;
-    EXPECT_NEAR(friction, energy / (4 * kAmplitude), 1e-14 * friction);
-    EXPECT_NEAR(joint.at_amplitude.energy, 0.0, kElastic);
-    EXPECT_NEAR(joint.at_amplitude.force, (friction + peak) / peak, kElastic);
-  }
-  const ModelLaw sticks{&Model("mindlin-dahl"), {4e7, 0.0, 40.0}};
-  EXPECT_THROW(To("urdf", sticks, {.amplitude = 5e-7}), InvalidArgument);
-}
-
 TEST(Conversion, SaysWhereForceAndEnergyAreWithinTheTolerance) {
   const Conversion dahl = To("dahl", kMindlin, {.tolerance = 0.05});
   ASSERT_TRUE(dahl.within);
@@ -175,25 +159,14 @@ TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
   EXPECT_NEAR(parameters[4].value / parameters[3].value, 4.0, 1e-14 * 4);
 }
 
-TEST(InputLines, OfDiscreteElementCodesNeedANormalLoad) {
-  for (const auto& [name, lines] : {std::pair{"lammps", 2U}, {"yade", 2U}, {"liggghts", 5U}}) {
-    const Conversion conversion = To(name, kMindlin);
-    EXPECT_THROW(InputLines(conversion, Target(name)), InputError) << name;
-    EXPECT_EQ(InputLines(conversion, Target(name), {.normal_load = 100.0}).size(), lines) << name;
-  }
-  EXPECT_THROW(Validate({.contact_radius = 1e-4}, Target("liggghts")), InputError);
-}
-
-TEST(Parameters, OfYadeHaveTheAngleOfFriction) {
-  const std::vector<Parameter> parameters =
-      ParametersOf(To("yade", kMindlin), Target("yade"), {.normal_load = 100.0});
-  ASSERT_EQ(parameters.size(), 4U);
-  EXPECT_EQ(parameters[0].name, "ks");
-  EXPECT_NEAR(std::tan(parameters[3].value), parameters[1].value / 100.0, 1e-15);
+TEST(InputLines, OfLammpsNeedANormalLoad) {
+  const Conversion conversion = To("lammps", kMindlin);
+  EXPECT_THROW(InputLines(conversion, Target("lammps")), InputError);
+  EXPECT_EQ(InputLines(conversion, Target("lammps"), {.normal_load = 100.0}).size(), 2U);
 }
 
 TEST(InputLines, OfJointsHaveTheirDamping) {
-  for (const char* name : {"lugre", "mujoco", "mujoco-joint", "urdf", "sdf"}) {
+  for (const char* name : {"lugre", "mujoco"}) {
     const TargetRow& target = Target(name);
     const Conversion conversion = To(target.name, kMindlin);
     double viscous = 0.0;

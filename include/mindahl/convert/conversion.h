@@ -19,7 +19,6 @@ enum class Form {
   kBoucWen,      ///< k, n, Tc of Bouc's and Wen's law at a given β
   kElements,     ///< n Jenkins elements in parallel
   kSpring,       ///< a tangential spring with Coulomb's limit, as discrete-element codes have it
-  kCoulomb,      ///< Coulomb's friction without presliding, as descriptions of robots have it
 };
 
 /// A parameter of the other law, under that law's name for it.
@@ -74,8 +73,7 @@ struct Conversion {
 /// Masing's law and Dahl's own are one curve at X, in closed form (models/steady_loop.h). LuGre,
 /// Bouc–Wen and the spring with Coulomb's limit have the contact's peak force and energy at X, the
 /// exponent of Bouc–Wen that of the least difference of force. Jenkins elements are the tangents of
-/// the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's. Coulomb's
-/// friction is the mean force of a stroke, W/4X.
+/// the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
 /// @throws InvalidArgument for an invalid law or option
 /// Cost: some 10 ms, of Bouc's and Wen's law some 0.5 s.
@@ -105,7 +103,7 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRo
 
 /// Returns the lines that the target reads.
 /// @param remark  stands before them as a comment, where the target has comments
-/// @throws InputError for a discrete-element code without a normal load
+/// @throws InputError for LAMMPS without a normal load
 std::vector<std::string> InputLines(const Conversion& conversion, const TargetRow& target,
                                     const NormalContact& contact = {},
                                     std::string_view remark = {});
