@@ -204,8 +204,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.AddQuantity("--normal-load", options->normal.normal_load,
-                     "normal load [N] for --to lammps: friction coefficient Tc/N",
-                     "N", "N");
+                     "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
   result.AddQuantity("--contact-radius", options->normal.contact_radius,
                      "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
   result.Add("--viscous", options->normal.viscous,

@@ -12,21 +12,17 @@ namespace {
 /// elements are made of.
 struct Tangent {
   long double slope;      // φ' = u^α
-  long double intercept;  // F = φ − yφ' = 1 − u − (u^α − u)/(1 − α)
+  long double intercept;  // F = φ − yφ' = (1 − u^α − α(1 − u))/(1 − α)
 };
 
-/// Returns the tangent where the larger of u and u^α is `larger`: of the smaller, for α far from 1,
-/// nothing would be left.
-Tangent TangentAt(long double larger, long double shape_exponent) {
+Tangent TangentAt(long double u, long double shape_exponent) {
+  if (u <= 0) return {0, 1};
+  constexpr long double kLogarithmic = 1e-9L;  // where 1 - α is less, its first power is rounding
+  const long double log_u = std::log(u);
   const long double beta = 1 - shape_exponent;
-  if (larger <= 0) return {0, 1};
-  const long double log_larger = std::log(larger);
-  if (beta == 0) return {larger, 1 - larger + larger * log_larger};
-  const long double log_ratio =
-      log_larger * (beta > 0 ? beta / shape_exponent : -beta);  // of the smaller to the larger
-  const long double less = -larger * std::expm1(log_ratio);     // |u^α − u|
-  return {beta > 0 ? larger : larger - less,
-          1 - larger + (beta > 0 ? less : 0) - less / std::abs(beta)};
+  const long double slope = std::exp(shape_exponent * log_u);
+  if (std::abs(beta) < kLogarithmic) return {slope, 1 - u + u * log_u};
+  return {slope, -(std::expm1(shape_exponent * log_u) + shape_exponent * (1 - u)) / beta};
 }
 
 }  // namespace
@@ -38,10 +34,8 @@ IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements
   IwanElements result;
   Tangent last = TangentAt(1, law.shape_exponent);
   for (std::size_t i = 1; i <= elements; ++i) {
-    // The larger of u and u^α, with √u = 1 − i/n; exactly 0 at the last.
-    const long double left = 1 - static_cast<long double>(i) / static_cast<long double>(elements);
-    const Tangent next = TangentAt(std::pow(left, 2 * std::min<long double>(law.shape_exponent, 1)),
-                                   law.shape_exponent);
+    const long double root = 1 - static_cast<long double>(i) / static_cast<long double>(elements);
+    const Tangent next = TangentAt(root * root, law.shape_exponent);
     result.stiffness.push_back(
         static_cast<double>(law.tangential_stiffness * (last.slope - next.slope)));
     result.slip_force.push_back(

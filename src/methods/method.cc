@@ -34,32 +34,33 @@ constexpr double kRatePower = 31.0;  // the slope at the start of a branch of Da
 constexpr double kLookUp = 2.3;      // the branch law from a table
 constexpr double kElement = 0.35;    // an element of Iwan's, moved on
 constexpr double kSum = 4.0;         // the sum of their forces
+constexpr double kRate = 33.0;       // of dopri5, a power
+constexpr double kTrial = 52.0;      // of dopri5, a step, accepted or not, but for its powers
 
-struct PathSize {
-  double samples = 0.0;
-  double branches = 0.0;
+/// Returns the time [ns] of finding the path and evaluating a law at every sample and reversal.
+double CostOf(const LoadingPath& path, std::size_t samples, double evaluation) {
+  const auto branches = static_cast<double>(path.branches.size());
+  const auto places = static_cast<double>(samples);
+  return kPlace * places + kReversal * branches + evaluation * (places + branches);
+}
 
-  [[nodiscard]] double cost() const { return kPlace * samples + kReversal * branches; }
-};
-
-PathSize SizeOf(const FrictionModel& model, const Drive& drive) {
-  return {static_cast<double>(drive.displacement.size()),
-          static_cast<double>(MakeDrivePath(model, drive).branches.size())};
+LoadingPath PathOf(const FrictionModel& model, const Drive& drive) {
+  return models::MakeLoadingPath(drive.displacement, loop::FindReversals(drive.displacement, 0.0),
+                                 model.memory, {.state = models::InitialState::kVirgin});
 }
 
 Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
-  return [&model, law](const Drive& drive, std::span<double> force) {
-    models::EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
+  // Of Jenkins' element the law is hidden by finding the branch.
+  const double evaluation = law.shape_exponent == 0         ? 0.0
+                            : law.shape_exponent == 1.0 / 3 ? kRoot
+                                                            : kPower;
+  const double start = model.memory == models::Memory::kNone ? kRatePower : 0.0;
+  return [&model, law, evaluation, start](const Drive& drive, std::span<double> force) {
+    const LoadingPath path = PathOf(model, drive);
+    models::EvaluateForce(model, law, path, drive.displacement, force);
+    return CostOf(path, force.size(), evaluation) +
+           start * static_cast<double>(path.branches.size());
   };
-}
-
-double CostOfExact(const FrictionModel& model, const BranchLaw& law, const Resolution&,
-                   const Drive& drive) {
-  const PathSize path = SizeOf(model, drive);
-  const double start = model.memory == models::Memory::kNone ? kRatePower * path.branches : 0.0;
-  if (law.shape_exponent == 0) return path.cost() + start;  // hidden by finding the branch
-  const double evaluations = path.samples + path.branches;
-  return path.cost() + start + (law.shape_exponent == 1.0 / 3 ? kRoot : kPower) * evaluations;
 }
 
 /// Implements a shape as backbone.h defines it.
@@ -90,9 +91,6 @@ class TableShape {
   double intervals_per_unit_ = 1.0;
 };
 
-constexpr double kCostOfRate = 33.0;   // [ns] a power
-constexpr double kCostOfTrial = 52.0;  // [ns] a step, accepted or not, but for its powers
-
 /// A branch as far as it has been followed.
 struct FollowedBranch {
   models::ScaledBranch scaled;
@@ -100,53 +98,17 @@ struct FollowedBranch {
   double remaining = 1.0;  // u there
 };
 
-/// Integrates du/dy = −u₊^α.
-struct AdaptiveSteps {
-  double shape_exponent;
-  Resolution resolution;
-  double* cost;
-
-  void Spend(double nanoseconds) const {
-    if (cost != nullptr) *cost += nanoseconds;
-  }
-
-  /// Returns u₊^α; 0 from slip on also for α = 0, and 1 before the branch, which a trial step asks
-  /// for.
-  [[nodiscard]] double Rate(double remaining) const {
-    if (remaining <= 0) return 0.0;
-    if (remaining >= 1 || shape_exponent == 0) return 1.0;
-    if (shape_exponent == 1) return remaining;
-    Spend(kCostOfRate);
-    return shape_exponent == 1.0 / 3 ? std::cbrt(remaining) : std::pow(remaining, shape_exponent);
-  }
-
-  /// Returns u a distance further on.
-  [[nodiscard]] double Advance(double remaining, double distance) const {
-    namespace odeint = boost::numeric::odeint;
-    auto stepper =
-        odeint::make_controlled<odeint::runge_kutta_dopri5<double>>(resolution.tolerance, 0.0);
-    const auto system = [&](double u, double& derivative, double /*y*/) { derivative = -Rate(u); };
-    const double longest = distance / static_cast<double>(resolution.steps);
-    double y = 0.0;
-    double h = longest;
-    while (remaining > 0 && y < distance) {
-      h = std::min({h, longest, distance - y});
-      if (y + h <= y) return remaining;
-      // Ends also in the corner at slip: rates are within [0, 1], so that no step h <= tolerance
-      // is rejected.
-      Spend(kCostOfTrial);
-      stepper.try_step(system, remaining, y, h);
-    }
-    return remaining;
-  }
-};
-
-/// Follows every branch of a path.
+/// Follows each branch by the equation du/dy = −u₊^α, u(0) = 1, in the branch's own scale, in which
+/// it is one for every model and branch. A branch that is left and taken up again goes on from
+/// where it was left: that is return-point memory.
 class BranchFollower {
  public:
   BranchFollower(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                 const AdaptiveSteps& steps)
-      : scaling_(model, law), path_(path), steps_(steps) {
+                 const Resolution& resolution)
+      : scaling_(model, law),
+        path_(path),
+        shape_exponent_(law.shape_exponent),
+        resolution_(resolution) {
     followed_.reserve(path.branches.size());
   }
 
@@ -157,11 +119,14 @@ class BranchFollower {
     const double travel = displacement - on.scaled.origin;
     const double y = on.scaled.Normalize(travel);
     if (y > on.y) {
-      on.remaining = std::clamp(steps_.Advance(on.remaining, y - on.y), 0.0, 1.0);
+      on.remaining = std::clamp(Advance(on.remaining, y - on.y), 0.0, 1.0);
       on.y = y;
     }
     return on.scaled.force + std::copysign(on.scaled.height * (1 - on.remaining), travel);
   }
+
+  /// Returns the time [ns] that steps took so far.
+  [[nodiscard]] double cost() const { return cost_; }
 
  private:
   void Open(const models::Branch& branch) {
@@ -170,22 +135,48 @@ class BranchFollower {
     followed_.push_back({scaling_.Start(branch, origin_force)});
   }
 
+  /// Returns u₊^α; 0 from slip on also for α = 0, and 1 before the branch, which a trial step asks
+  /// for.
+  double Rate(double remaining) {
+    if (remaining <= 0) return 0.0;
+    if (remaining >= 1 || shape_exponent_ == 0) return 1.0;
+    cost_ += kRate;
+    return shape_exponent_ == 1.0 / 3 ? std::cbrt(remaining) : std::pow(remaining, shape_exponent_);
+  }
+
+  /// Returns u a distance further on.
+  double Advance(double remaining, double distance) {
+    namespace odeint = boost::numeric::odeint;
+    auto stepper =
+        odeint::make_controlled<odeint::runge_kutta_dopri5<double>>(resolution_.tolerance, 0.0);
+    const auto system = [&](double u, double& derivative, double /*y*/) { derivative = -Rate(u); };
+    const double longest = distance / static_cast<double>(resolution_.steps);
+    double y = 0.0;
+    double h = longest;
+    while (remaining > 0 && y < distance) {
+      h = std::min({h, longest, distance - y});
+      if (y + h <= y) return remaining;
+      // Ends also in the corner at slip: rates are within [0, 1], so that no step h <= tolerance
+      // is rejected.
+      cost_ += kTrial;
+      stepper.try_step(system, remaining, y, h);
+    }
+    return remaining;
+  }
+
   models::BranchScaling scaling_;
   const LoadingPath& path_;
-  const AdaptiveSteps& steps_;
+  double shape_exponent_;
+  Resolution resolution_;
+  double cost_ = 0.0;
   std::vector<FollowedBranch> followed_;
 };
 
-/// Follows each branch by the equation du/dy = −u₊^α, u(0) = 1, in the branch's own scale, in which
-/// it is one for every model and branch. A branch that is left and taken up again goes on from
-/// where it was left: that is return-point memory.
-/// @param cost  of the steps [ns], added to; null where it is not asked for
-Evaluator MakeDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                     double* cost) {
-  return [&model, law, steps = AdaptiveSteps{law.shape_exponent, resolution, cost}](
-             const Drive& drive, std::span<double> force) {
-    const LoadingPath path = MakeDrivePath(model, drive);
-    BranchFollower follower(model, law, path, steps);
+Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
+                        const Resolution& resolution) {
+  return [&model, law, resolution](const Drive& drive, std::span<double> force) {
+    const LoadingPath path = PathOf(model, drive);
+    BranchFollower follower(model, law, path, resolution);
     const double limit = path.limit();
     for (const models::BranchRun& run : path.runs) {
       for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -194,37 +185,18 @@ Evaluator MakeDopri5(const FrictionModel& model, const BranchLaw& law, const Res
         force[i] = law.slip_force * std::clamp(t, -limit, limit);
       }
     }
+    return CostOf(path, force.size(), 0.0) + follower.cost();
   };
-}
-
-Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
-                        const Resolution& resolution) {
-  return MakeDopri5(model, law, resolution, nullptr);
-}
-
-/// Evaluates: steps depend on where the drive slips, and on the error that is found.
-double CostOfDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                    const Drive& drive) {
-  double steps = 0.0;
-  std::vector<double> force(drive.displacement.size());
-  MakeDopri5(model, law, resolution, &steps)(drive, force);
-  return SizeOf(model, drive).cost() + steps;
 }
 
 Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution) {
   return [elements = MakeIwanElements(law, resolution.steps)](const Drive& drive,
                                                               std::span<double> force) {
     EvaluateIwanForce(elements, drive.displacement, force);
+    constexpr std::size_t kLanes = 4;  // moved at once, filled or not
+    const std::size_t moved = (elements.size() + kLanes - 1) / kLanes * kLanes;
+    return static_cast<double>(force.size()) * (kElement * static_cast<double>(moved) + kSum);
   };
-}
-
-double CostOfIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution,
-                  const Drive& drive) {
-  constexpr std::size_t kLanes = 4;  // moved at once, filled or not
-  const std::size_t elements = law.shape_exponent == 0 ? 1 : resolution.steps;
-  const std::size_t moved = (elements + kLanes - 1) / kLanes * kLanes;
-  return static_cast<double>(drive.displacement.size()) *
-         (kElement * static_cast<double>(moved) + kSum);
 }
 
 /// Tabulates φ between equal intervals of r = y/(1+y), which takes every y to [0, 1), linearly.
@@ -232,47 +204,34 @@ Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
                        const Resolution& resolution) {
   const auto shape = std::make_shared<const TableShape>(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
+    const LoadingPath path = PathOf(model, drive);
     models::ScaledBranches branches;
-    models::EvaluatePath(model, law, 0.0, *shape, MakeDrivePath(model, drive), drive.displacement,
-                         force, branches);
+    models::EvaluatePath(model, law, 0.0, *shape, path, drive.displacement, force, branches);
+    return CostOf(path, force.size(), kLookUp);
   };
 }
 
-double CostOfTable(const FrictionModel& model, const BranchLaw&, const Resolution&,
-                   const Drive& drive) {
-  const PathSize path = SizeOf(model, drive);
-  return path.cost() + kLookUp * (path.samples + path.branches);
-}
-
 constexpr std::array kMethods{
-    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .cost = CostOfExact},
+    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact},
     Method{.name = "dopri5",
            .title = "Dormand-Prince 5(4), adaptive",
            .steps = "substeps a sample at least",
            .adaptive = true,
-           .prepare = PrepareDopri5,
-           .cost = CostOfDopri5},
+           .prepare = PrepareDopri5},
     Method{.name = "iwan",
            .title = "Jenkins elements in parallel",
            .steps = "elements",
            .default_steps = 32,
            .masing_only = true,
-           .prepare = PrepareIwan,
-           .cost = CostOfIwan},
+           .prepare = PrepareIwan},
     Method{.name = "table",
            .title = "tabulated branch law",
            .steps = "intervals",
            .default_steps = 256,
-           .prepare = PrepareTable,
-           .cost = CostOfTable},
+           .prepare = PrepareTable},
 };
 
 }  // namespace
-
-models::LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive) {
-  return models::MakeLoadingPath(drive.displacement, loop::FindReversals(drive.displacement, 0.0),
-                                 model.memory, {.state = models::InitialState::kVirgin});
-}
 
 std::span<const Method> Methods() { return kMethods; }
 
@@ -299,15 +258,8 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   return [evaluate = method.prepare(model, law, resolution)](const Drive& drive,
                                                              std::span<double> force) {
     RequireSameSize("displacement", drive.displacement.size(), "force", force.size());
-    evaluate(drive, force);
+    return evaluate(drive, force);
   };
-}
-
-double CostOf(const Method& method, const FrictionModel& model, const BranchLaw& law,
-              const Resolution& resolution, const Drive& drive) {
-  Prepare(method, model, law, resolution);  // checks the arguments
-  return kCostOfSample + method.cost(model, law, resolution, drive) /
-                             static_cast<double>(drive.displacement.size());
 }
 
 }  // namespace mindahl::methods

@@ -182,20 +182,21 @@ TEST(Table, IsExactForTheHyperbolaItIsSpacedBy) {
 
 // --- Costs ----------------------------------------------------------------------------------
 
-TEST(CostOf, IsWhatAMethodDoesAlongTheDrive) {
+TEST(Cost, IsOfWhatAMethodDoesAlongTheDrive) {
   // Up, down and up again, never slipping: three branches.
   const std::vector<double> displacement = {0.1, 0.2, 0.3, 0.4, 0.3, 0.2, 0.1, 0.15, 0.2, 0.25};
   const auto cost = [&](std::string_view method, const Resolution& resolution = {},
                         std::string_view model = "mindlin-dahl", double alpha = 1.0 / 3) {
-    return CostOf(*FindMethod(method), *FindFrictionModel(model), {1, alpha, 1}, resolution,
-                  {.displacement = displacement});
+    std::vector<double> force(displacement.size());
+    return Prepare(*FindMethod(method), *FindFrictionModel(model), {1, alpha, 1}, resolution)(
+        {.displacement = displacement}, force);
   };
-  EXPECT_DOUBLE_EQ(cost("exact"), 1.5 + 4.1 + 30 + 1.3 * 1.4);
-  EXPECT_DOUBLE_EQ(cost("exact", {}, "mindlin-dahl", 0.6), 1.5 + 4.1 + 30 + 1.3 * 17);
-  EXPECT_DOUBLE_EQ(cost("exact", {}, "mindlin-dahl", 0.0), 1.5 + 4.1 + 30);
-  EXPECT_DOUBLE_EQ(cost("exact", {}, "dahl"), 1.5 + 4.1 + 30 + 1.3 * 1.4 + 0.3 * 31);
-  EXPECT_DOUBLE_EQ(cost("iwan", {.steps = 5}), 1.5 + 8 * 0.35 + 4);
-  EXPECT_DOUBLE_EQ(cost("table", {.steps = 64}), 1.5 + 4.1 + 30 + 1.3 * 2.3);
+  EXPECT_DOUBLE_EQ(cost("exact"), 41 + 300 + 13 * 1.4);
+  EXPECT_DOUBLE_EQ(cost("exact", {}, "mindlin-dahl", 0.6), 41 + 300 + 13 * 17);
+  EXPECT_DOUBLE_EQ(cost("exact", {}, "mindlin-dahl", 0.0), 41 + 300);
+  EXPECT_DOUBLE_EQ(cost("exact", {}, "dahl"), 41 + 300 + 13 * 1.4 + 3 * 31);
+  EXPECT_DOUBLE_EQ(cost("iwan", {.steps = 5}), 10 * (8 * 0.35 + 4));
+  EXPECT_DOUBLE_EQ(cost("table", {.steps = 64}), 41 + 300 + 13 * 2.3);
   EXPECT_GT(cost("dopri5", {.tolerance = 1e-13}), cost("dopri5", {.tolerance = 1e-3}));
   EXPECT_EQ(cost("dopri5"), cost("dopri5"));
 }

@@ -8,7 +8,6 @@
 
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/loading_path.h"
 
 namespace mindahl::methods {
 
@@ -19,10 +18,6 @@ struct Drive {
   /// it, but Simplified-Dahl does (models/simplified_law.h).
   std::span<const double> envelope = {};
 };
-
-/// Makes the loading path of a drive, in which every change of direction is a reversal.
-/// @throws InvalidArgument as MakeLoadingPath
-models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
 /// Sets how finely a method resolves.
 struct Resolution {
@@ -37,7 +32,12 @@ inline constexpr double kLeastTolerance = 4 * std::numeric_limits<double>::epsil
 
 /// Computes the force [N] along a drive; reversals and branches are found within. The spans must
 /// have one length.
-using Evaluator = std::function<void(const Drive& drive, std::span<double> force)>;
+///
+/// Returns what this costs [ns] by what was done, samples read and written aside: the same in every
+/// run, whatever machine runs it and however busy it is. What an operation takes is a regression of
+/// the times of bench/methods_bench on the machine that docs/tradeoff.md names; another machine
+/// takes about in proportion.
+using Evaluator = std::function<double(const Drive& drive, std::span<double> force)>;
 
 /// A way to evaluate a friction model along a drive. The reversals and the loops that close are the
 /// model's; what differs is how a branch is followed. Every method keeps |T| <= Tc; the elements of
@@ -52,9 +52,6 @@ struct Method {
   bool masing_only = false;  ///< serves only models whose memory is kReturnPoint
   Evaluator (*prepare)(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution) = nullptr;
-  /// Returns what an evaluation along the whole drive takes [ns], samples read and written aside.
-  double (*cost)(const models::FrictionModel& model, const models::BranchLaw& law,
-                 const Resolution& resolution, const Drive& drive) = nullptr;
 };
 
 /// - exact: the closed form (models/response.h)
@@ -75,19 +72,5 @@ const Method* FindMethod(std::string_view name);
 ///   serve, naming both
 Evaluator Prepare(const Method& method, const models::FrictionModel& model,
                   const models::BranchLaw& law, const Resolution& resolution);
-
-/// Returns the cost [ns/sample] of an evaluation by what it does along the drive: the same in every
-/// run, whatever machine runs it and however busy it is. What an operation takes is a regression of
-/// the times of bench/methods_bench on the machine that docs/tradeoff.md names; another machine
-/// takes about in proportion.
-/// @throws InvalidArgument as Prepare()
-/// Takes one evaluation at most.
-double CostOf(const Method& method, const models::FrictionModel& model,
-              const models::BranchLaw& law, const Resolution& resolution, const Drive& drive);
-
-/// Time that reading a displacement and writing a force takes [ns].
-inline constexpr double kCostOfSample = 1.5;
-/// Time that a step of Simplified-Dahl under an envelope takes [ns]: it opens a branch of its own.
-inline constexpr double kCostOfStep = 139.3;
 
 }  // namespace mindahl::methods

@@ -21,14 +21,10 @@ struct Approximation {
 /// Returns "mindlin by table, 64 intervals", "spring".
 std::string Describe(const Approximation& approximation);
 
-/// Returns the approximation made ready for a contact, with the model's α where it prescribes one.
+/// Returns the approximation made ready for a contact, with the model's α where it prescribes one;
+/// what it costs is as of methods/method.h, of a limit law 0.
 /// @throws InvalidArgument for an unknown model or method, or as Prepare() of methods/method.h
 methods::Evaluator Prepare(const Approximation& approximation, const models::BranchLaw& law);
-
-/// Returns the cost [ns/sample] along a drive: methods::CostOf(), of a limit law that of a sample.
-/// @throws InvalidArgument as Prepare()
-double CostOf(const Approximation& approximation, const models::BranchLaw& law,
-              const methods::Drive& drive);
 
 /// Returns the Masing law with the contact's α, by the name under which it is cheapest: "mindlin"
 /// for α = 1/3, "jenkins" for α = 0, else "mindlin-dahl".
@@ -56,7 +52,7 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
 struct WorkPrecision {
   Approximation approximation = {};
   Precision precision = {};
-  double cost = 0.0;  ///< [ns/sample], of CostOf()
+  double cost = 0.0;  ///< [ns/sample], reading and writing included
   /// True if no other point beats it both in cost and in the largest force error.
   bool is_on_front = false;
 };
