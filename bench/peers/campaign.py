@@ -101,8 +101,6 @@ def main():
                     "pandas, reading": 1e6 * seconds / cycles,
                     "mindahl track, reading and fits": 1e6 * cost_of(
                         track(record, "--threads", "1"))[0] / cycles,
-                    "mindahl track, reading alone": 1e6 * cost_of(
-                        track(record, "--threads", "1", "--every", "1000000000"))[0] / cycles,
                     "mindahl, a cycle's values": fits["estimate_us"],
                     "mindahl, values and errors": fits["errors_us"],
                     "lmfit, bare fit": 1e3 * lmfit["median_ms"],

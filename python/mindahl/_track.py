@@ -49,13 +49,13 @@ class CycleTable(Told, Table):
                 self._columns[name] = np.array([float(cell or "nan") for cell in cells])
 
 
-def track(source: Any = None, force: Any = None, *, average: int = 1, every: int = 1,
+def track(source: Any = None, force: Any = None, *, average: int = 1,
           threads: Optional[int] = None, executor: Any = None, **keywords: Any) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
     source, force: as of fit(). A file is read piece by piece, in constant memory; a list of sources is
         one test in this order, and no cycle extends over two sources.
-    average: number of consecutive cycles that are fitted together. every: fits only every n-th.
+    average: number of consecutive cycles that are fitted together.
     threads: number of workers; default one per core. executor: where the test is tracked instead of
         here, as of batch(): what it gives back is pickled.
     keywords: of fit(), but for single cycles' covariates, trim and selections. terms: "auto" chooses by
@@ -68,7 +68,7 @@ def track(source: Any = None, force: Any = None, *, average: int = 1, every: int
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits.
     """
-    task = {"source": source, "force": force, "average": average, "every": every, "threads": threads,
+    task = {"source": source, "force": force, "average": average, "threads": threads,
             **keywords}
     done: tuple[CycleTable, list[str]] = (_tracked(task) if executor is None else
                                           in_executor(executor, _tracked, [task])[0])

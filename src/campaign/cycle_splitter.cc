@@ -51,12 +51,18 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   }
   AppendColumn(lines, kept_.lines);
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    // The numbers of a row are a polynomial, so that only one word a row waits for the last one.
+    std::uint64_t row = lines[i];
+    for (const auto& column : columns) {
+      if (column.empty()) continue;
+      row = row * 0xd1342543de82ef95U + std::bit_cast<std::uint64_t>(column[i]);
+    }
+    checksum_ = Stir(checksum_, row);
     const std::optional<std::size_t> turn = finder_.Add(samples.displacement[i]);
     if (turn) Complete(*turn, cycles);
   }
   for (const auto column : loop::kRecordColumns) EraseFirst(kept_.*column, begin_);
   EraseFirst(kept_.lines, begin_);
-  summed_ -= begin_;
   dropped_ += std::exchange(begin_, 0);
   if (kept_.size() > kMostSamples) {
     throw InvalidArgument(
@@ -68,7 +74,6 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
 
 void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycles) {
   const std::size_t turn = turning_point - dropped_;
-  SumUpTo(turn + 1);
   if (turns_ == 0) begin_ = turn;
   if (turns_ < 2 * together_) {
     ++turns_;
@@ -90,22 +95,8 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
   turns_ = 1;
 }
 
-void CycleSplitter::SumUpTo(std::size_t end) {
-  for (; summed_ < end; ++summed_) {
-    // The numbers of a row are a polynomial, so that only one word a row waits for the last one.
-    std::uint64_t row = kept_.lines[summed_];
-    for (const auto column : loop::kRecordColumns) {
-      if ((kept_.*column).empty()) continue;
-      row = row * 0xd1342543de82ef95U + std::bit_cast<std::uint64_t>((kept_.*column)[summed_]);
-    }
-    checksum_ = Stir(checksum_, row);
-  }
-}
-
 std::size_t CycleSplitter::Restart() {
   const std::size_t left = kept_.size();
-  SumUpTo(left);
-  summed_ = 0;
   kept_ = {};
   finder_ = loop::ReversalFinder(gate_);
   dropped_ = 0;

@@ -116,14 +116,12 @@ struct Segment {
 
 /// Appends the segments of these bins.
 void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segments) {
-  // A change falls within a bin of several cycles, which is left out.
-  const std::size_t gap = bins.front().count > 1 ? 1 : 0;
   const Line one = LineThrough(bins);
   std::size_t place = 0;
   double least = one.squares;
-  for (std::size_t k = kLeastBins; depth > 0 && k + gap + kLeastBins <= bins.size(); ++k) {
+  for (std::size_t k = kLeastBins; depth > 0 && k + kLeastBins <= bins.size(); ++k) {
     const double squares =
-        LineThrough(bins.first(k)).squares + LineThrough(bins.subspan(k + gap)).squares;
+        LineThrough(bins.first(k)).squares + LineThrough(bins.subspan(k)).squares;
     if (squares < least) {
       least = squares;
       place = k;
@@ -138,7 +136,7 @@ void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segm
           : std::min(1.0, static_cast<double>(bins.size()) * PValueOfF(f, kMore, noise.degrees));
   if (p_value < kChance) {
     Divide(bins.first(place), noise, depth - 1, segments);
-    Divide(bins.subspan(place + gap), noise, depth - 1, segments);
+    Divide(bins.subspan(place), noise, depth - 1, segments);
     return;
   }
   segments.push_back({bins, one});
@@ -198,14 +196,13 @@ std::optional<Change> StepBetween(const Segment& before, const Segment& after, c
 std::optional<CourseDescription> Describe(const Course& course) {
   if (course.bins().empty()) return std::nullopt;
   const double mean = LineThrough(course.bins()).level;
-  CourseDescription description{
-      .first = course.first(), .last = course.last(), .from = mean, .to = mean};
+  CourseDescription description{.from = mean, .to = mean};
   const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
   if (bins.size() < 2 * kLeastBins) return description;
   const Noise noise = NoiseOf(course.bins());
   std::vector<Segment> segments;
   Divide(bins, noise, kDepth, segments);
-  std::vector<Change>& trends = description.trends;
+  std::vector<Change>& changes = description.changes;
   const Segment* before = nullptr;
   for (Segment& segment : segments) {
     Line& line = segment.line;
@@ -216,14 +213,14 @@ std::optional<CourseDescription> Describe(const Course& course) {
     if (!(p_value < kChance && is_large)) line.slope = 0;
     std::optional<Change> step;
     if (before != nullptr) step = StepBetween(*before, segment, noise, bins.size());
-    if (step) description.steps.push_back(*step);
+    if (step) changes.push_back(*step);
     if (before != nullptr && !step && before->line.slope * line.slope > 0) {
-      trends.back().last_cycle = segment.bins.back().last_cycle;
-      trends.back().to = segment.last();
-      trends.back().p_value = std::min(trends.back().p_value, p_value);
+      changes.back().last_cycle = segment.bins.back().last_cycle;
+      changes.back().to = segment.last();
+      changes.back().p_value = std::min(changes.back().p_value, p_value);
     } else if (line.slope != 0) {
-      trends.push_back({segment.bins.front().first_cycle, segment.bins.back().last_cycle,
-                        segment.first(), segment.last(), p_value});
+      changes.push_back({segment.bins.front().first_cycle, segment.bins.back().last_cycle,
+                         segment.first(), segment.last(), p_value});
     }
     before = &segment;
   }
@@ -271,7 +268,7 @@ constexpr std::array kQuantities = {
     TrackedQuantity{"sigma", "σ", "sigma_open", "sigma_error"},
     TrackedQuantity{"contact_radius", "a", "sigma_open", "sigma_error"},
     TrackedQuantity{"alpha", "", "alpha_open", "alpha_error"},
-    TrackedQuantity{"energy", "", "", "rms", /*is_drawn=*/false},
+    TrackedQuantity{"energy", "", "", "rms"},
     TrackedQuantity{"energy_ratio", "", "", "rms"},
 };
 
@@ -305,7 +302,8 @@ std::string FromTo(const std::vector<double>& values, const std::string& unit) {
   std::vector<std::string> texts;
   texts.reserve(values.size());
   for (const double value : values) {
-    texts.push_back(fmt::format("{:.{}f}", value / scaled.factor, decimals));
+    const std::string text = fmt::format("{:.{}f}", value / scaled.factor, decimals);
+    if (texts.empty() || text != texts.back()) texts.push_back(text);
   }
   return fmt::format("{}{}{}", fmt::join(texts, " → "), scaled.name.empty() ? "" : " ",
                      scaled.name);
@@ -316,19 +314,16 @@ std::string FromTo(const std::vector<double>& values, const std::string& unit) {
 std::vector<double> Milestones(const CourseDescription& course) {
   const auto [low, high] = std::minmax(course.from, course.to);
   double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.from));
-  std::optional<double> extreme;
-  for (const auto* changes : {&course.trends, &course.steps}) {
-    for (const Change& change : *changes) {
-      for (const double value : {change.from, change.to}) {
-        const double beyond = std::max(value - high, low - value);
-        if (beyond <= farthest) continue;
-        farthest = beyond;
-        extreme = value;
-      }
+  std::vector<double> values = {course.from, course.to};
+  for (const Change& change : course.changes) {
+    for (const double value : {change.from, change.to}) {
+      const double beyond = std::max(value - high, low - value);
+      if (beyond <= farthest) continue;
+      farthest = beyond;
+      values = {course.from, value, course.to};
     }
   }
-  if (!extreme) return {course.from, course.to};
-  return {course.from, *extreme, course.to};
+  return values;
 }
 
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
@@ -345,7 +340,8 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   }
   panel.series.push_back(std::move(course));
   report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
-  for (const Change& step : evolution.description.steps) {
+  for (const Change& step : evolution.description.changes) {
+    if (!step.is_step()) continue;
     panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
                            .label = fmt::format("step, {}", step.first_cycle)});
   }
@@ -393,25 +389,14 @@ void Describe(std::vector<Evolution>& evolutions) {
 }
 
 void DissipatedEnergy::Add(const CycleFit& fit) {
-  constexpr std::size_t kNeighbours = 9;
-  const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
-  const bool is_open = fit.HasFlag("not_closed") || fit.HasFlag("rows_missing");
-  if (is_open && !of_a_step.empty()) {
-    std::vector<double> neighbours(of_a_step.begin(), of_a_step.end());
-    of_last = steps * boost::math::statistics::median(neighbours);
-  } else if (is_open || !fit["energy"]) {
-    of_last = 0.0;
+  const auto steps = static_cast<double>(std::max<std::size_t>(fit.samples, 2) - 1);
+  double energy = fit["energy"].value_or(0.0);
+  if (fit.HasFlag("not_closed") || fit.HasFlag("rows_missing")) {
+    energy = steps * of_a_step;
   } else {
-    of_last = *fit["energy"];
-    if (of_a_step.size() == kNeighbours) of_a_step.pop_front();
-    of_a_step.push_back(*fit["energy"] / steps);
+    of_a_step = energy / steps;
   }
-  Finish(fit.number + together - 1);
-}
-
-void DissipatedEnergy::Finish(std::size_t cycles) {
-  total += static_cast<double>(cycles - counted) * of_last;
-  counted = cycles;
+  total += static_cast<double>(together) * energy;
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {
@@ -424,21 +409,18 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const bool is_force = quantity.name == "friction_coefficient" ||
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;
-    const std::string change = RelativeChange(course.from, course.to);
-    const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
-    // One value stands for all where they differ by scatter only.
-    const std::string level = report::Quantity(course.from, evolution.unit, 3);
-    if (!course.changed() && !evolution.is_tested()) {
-      const bool is_one = report::Quantity(course.first, evolution.unit, 3) ==
-                          report::Quantity(course.last, evolution.unit, 3);
-      text += is_one ? level : FromTo({course.first, course.last}, evolution.unit);
-      text += ", in too few rows to test";
-    } else if (!course.changed()) {
-      text += level + (evolution.is_known() ? " throughout, but for scatter" : "");
-    } else {
-      const std::vector<double> values = Milestones(course);
-      text += in_percent && values.size() == 2 ? change : FromTo(values, evolution.unit);
+    std::vector<double> values = {evolution.course.first(), evolution.course.last()};
+    if (course.changed()) {
+      values = Milestones(course);
+    } else if (evolution.is_tested()) {
+      values = {course.from};  // one value stands for all where they differ by scatter only
+    }
+    const bool in_percent = quantity.name == "sigma" && course.changed() && values.size() == 2;
+    const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
+    text += change.empty() ? FromTo(values, evolution.unit) : change;
+    if (!course.changed()) {
+      text += evolution.is_tested() ? " throughout, but for scatter" : ", in too few rows to test";
     }
     if (!evolution.is_known()) {
       text += fmt::format(" where it is known, in {} of {} rows", evolution.known, evolution.fits);
@@ -449,45 +431,38 @@ std::string Headline(std::span<const Evolution> evolutions) {
 }
 
 std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions, std::size_t most) {
-  std::vector<std::string> statements;
-  std::vector<double> sizes;  // relative
-  const auto add = [&](const Evolution& evolution, const std::string& when, const Change& change) {
-    const auto& [first, last, from, to, p_value] = change;
-    const std::string relative = RelativeChange(from, to);
-    sizes.push_back(std::abs(to - from) / std::max(std::abs(from), std::abs(to)));
-    statements.push_back(fmt::format(
-        "{}: {}, {}{}, {}", evolution.quantity->name, when, FromTo({from, to}, evolution.unit),
-        relative.empty() ? "" : " (" + relative + ")", report::ChanceText(p_value, 1)));
-  };
+  std::vector<std::pair<double, std::string>> statements;  // with the relative sizes
   for (const Evolution& evolution : evolutions) {
-    for (const Change& trend : evolution.description.trends) {
-      add(evolution, fmt::format("cycles {} to {}", trend.first_cycle, trend.last_cycle), trend);
-    }
-    for (const Change& step : evolution.description.steps) {
-      add(evolution, fmt::format("a step at cycle {}", step.first_cycle), step);
+    for (const auto& change : evolution.description.changes) {
+      const auto& [first, last, from, to, p_value] = change;
+      const std::string relative = RelativeChange(from, to);
+      statements.emplace_back(
+          std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
+          fmt::format("{}: {}, {}{}, {}", evolution.quantity->name,
+                      change.is_step() ? fmt::format("a step at cycle {}", first)
+                                       : fmt::format("cycles {} to {}", first, last),
+                      FromTo({from, to}, evolution.unit),
+                      relative.empty() ? "" : " (" + relative + ")",
+                      report::ChanceText(p_value, 1)));
     }
   }
-  if (statements.size() <= most) return statements;
-  std::vector<double> sorted = sizes;
-  std::ranges::sort(sorted, std::greater<>());
+  std::ranges::stable_sort(statements, std::greater<>(), &std::pair<double, std::string>::first);
   std::vector<std::string> lines;
-  for (std::size_t k = 0; k < statements.size(); ++k) {
-    if (sizes[k] > sorted[most - 1]) lines.push_back(std::move(statements[k]));
+  const std::size_t shown = statements.size() <= most ? most : most - 1;
+  for (auto& [size, statement] : statements) {
+    if (lines.size() < shown) lines.push_back(std::move(statement));
   }
-  lines.push_back(
-      fmt::format("and {} smaller ones, which --json lists", statements.size() - lines.size()));
+  if (statements.size() > most) {
+    lines.push_back(
+        fmt::format("and {} smaller ones, which --json lists", statements.size() - shown));
+  }
   return lines;
 }
 
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
-  const bool has_friction = std::ranges::any_of(evolutions, [](const Evolution& evolution) {
-    return evolution.quantity->name == "friction_coefficient";
-  });
   std::vector<io::PlotPanel> panels;
   for (const Evolution& evolution : evolutions) {
-    if (!evolution.quantity->is_drawn || evolution.course.bins().size() < 2) continue;
-    if (has_friction && evolution.quantity->name == "slip_force") continue;
-    panels.push_back(EvolutionPanel(evolution));
+    if (evolution.course.bins().size() > 1) panels.push_back(EvolutionPanel(evolution));
   }
   return panels;
 }

@@ -16,10 +16,6 @@ std::vector<CycleFit> FitBatch(const TrackOptions& options, const std::vector<Cy
   return fits;
 }
 
-void RequireCount(const char* quantity, std::size_t count) {
-  if (count < 1) ThrowInvalid(quantity, 0, "must be >= 1");
-}
-
 }  // namespace
 
 Tracker::Tracker(TrackOptions options, Done done)
@@ -27,8 +23,7 @@ Tracker::Tracker(TrackOptions options, Done done)
       done_(std::move(done)),
       splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together,
                 options_.seed) {
-  RequireCount("fits to choose one of [-]", options_.every);
-  RequireCount("threads [-]", options_.threads);
+  if (options_.threads < 1) ThrowInvalid("threads [-]", 0, "must be >= 1");
   if (options_.skipped % kBatch != 0) {
     ThrowInvalid("skipped fits [-]", static_cast<double>(options_.skipped),
                  "must be a multiple of a batch");
@@ -41,7 +36,6 @@ void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> 
   splitter_.Add(samples, lines, cycles_);
   for (Cycle& cycle : cycles_) {
     Log(cycle);
-    if (pieces_++ % options_.every != 0) continue;
     if (fits_++ < options_.skipped) {
       if (fits_ == options_.skipped) skipped_up_to_ = cycle.checksum;
       continue;

@@ -78,25 +78,28 @@ Json QuantityRows(const TrackedTest& test) {
   for (const Evolution& evolution : test.evolutions) {
     const campaign::CourseDescription& course = evolution.description;
     quantities[std::string(evolution.quantity->name)] = {
-        {"first", course.first},
-        {"last", course.last},
+        {"first", evolution.course.first()},
+        {"last", evolution.course.last()},
         {"known", evolution.known},
         {"unit", evolution.unit},
         {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
-        {"steps", report::ListOf(course.steps,
-                                 [](const campaign::Change& step) -> Json {
-                                   return {{"cycle", step.first_cycle},
-                                           {"before", step.from},
-                                           {"after", step.to},
-                                           {"p_value", step.p_value}};
-                                 })},
-        {"trends", report::ListOf(course.trends, [](const campaign::Change& trend) -> Json {
-           return {{"first_cycle", trend.first_cycle},
-                   {"last_cycle", trend.last_cycle},
-                   {"from", trend.from},
-                   {"to", trend.to},
-                   {"p_value", trend.p_value}};
-         })}};
+        {"steps", Json::array()},
+        {"trends", Json::array()}};
+    for (const campaign::Change& change : course.changes) {
+      Json& row = quantities[std::string(evolution.quantity->name)];
+      if (change.is_step()) {
+        row["steps"].push_back({{"cycle", change.first_cycle},
+                                {"before", change.from},
+                                {"after", change.to},
+                                {"p_value", change.p_value}});
+      } else {
+        row["trends"].push_back({{"first_cycle", change.first_cycle},
+                                 {"last_cycle", change.last_cycle},
+                                 {"from", change.from},
+                                 {"to", change.to},
+                                 {"p_value", change.p_value}});
+      }
+    }
   }
   return quantities;
 }
@@ -303,7 +306,6 @@ class TrackRun {
           options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
           test_.gate.gate);
     }
-    test_.energy.Finish(test_.cycles);
     campaign::Describe(test_.evolutions);
     return std::move(test_);
   }
@@ -469,7 +471,6 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const OptionGroup cycles(command, "Cycles");
   cycles.AddCount("--average", options->track.together,
                   "number of consecutive cycles that are fitted together", 1, 1'000'000);
-  cycles.AddCount("--every", options->track.every, "fit only one cycle of this many");
   cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "rows without a number in a needed column; skip counts them");

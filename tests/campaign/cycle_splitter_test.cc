@@ -59,13 +59,13 @@ TEST(CycleSplitter, ChecksumsSayWhatCameBefore) {
   ++lines[kEarly];
   EXPECT_NE(last_of(record, lines), cycles.back().checksum);
   EXPECT_NE(Split(record, CycleSplitter(0.0, 1, 2)).back().checksum, cycles.back().checksum);
-  // The last sample of a cycle is in its checksum, the one after it is not.
+  // The sample after a cycle, by which its end is seen, is in its checksum, the next one is not.
   loop::Record later = record;
   const std::size_t end = cycles[0].first_line - 2 + cycles[0].record.size();
-  later.force[end] += 1.0;
+  later.force[end + 1] += 1.0;
   EXPECT_EQ(Split(later)[0].checksum, cycles[0].checksum);
   EXPECT_NE(Split(later)[1].checksum, cycles[1].checksum);
-  later.force[end - 1] += 1.0;
+  later.force[end] += 1.0;
   EXPECT_NE(Split(later)[0].checksum, cycles[0].checksum);
 }
 

@@ -47,25 +47,16 @@ TEST(Tracker, BeginsAtALaterBatchWithItsRows) {
   }
 }
 
-TEST(Tracker, FitsOneOfSoManyCyclesOrCyclesTogether) {
-  TrackOptions options{.every = 10};
-  const std::vector<std::string> rows = Rows(options);
-  ASSERT_EQ(rows.size(), kCycles / 10);
-  EXPECT_TRUE(rows[0].starts_with("1,"));
-  EXPECT_TRUE(rows[1].starts_with("11,"));
-  EXPECT_TRUE(rows.back().starts_with("141,"));
-  options.together = 5;
-  options.every = 2;
-  const std::vector<std::string> together = Rows(options);
-  ASSERT_EQ(together.size(), kCycles / 10);
-  EXPECT_TRUE(together[1].starts_with("11,"));
+TEST(Tracker, FitsCyclesTogether) {
+  const std::vector<std::string> together = Rows({.together = 5});
+  ASSERT_EQ(together.size(), kCycles / 5);
+  EXPECT_TRUE(together[1].starts_with("6,"));
 }
 
 TEST(Tracker, RefusesOptionsBeforeItBegins) {
   using Change = std::function<void(TrackOptions&)>;
   for (const Change& change :
-       {Change([](TrackOptions& options) { options.every = 0; }),
-        Change([](TrackOptions& options) { options.threads = 0; }),
+       {Change([](TrackOptions& options) { options.threads = 0; }),
         Change([](TrackOptions& options) { options.skipped = kBatch + 1; }),
         Change([](TrackOptions& options) { options.fit.max_iterations = 0; })}) {
     TrackOptions options;

@@ -58,7 +58,7 @@ const std::vector<Rule> kRules = {
     {"contact", {"--friction", "--normal-load", "--contact-radius", "--compliance"}, kPositive},
     {"track", {"--force-noise", "--normal-load"}, kPositive},
     {"track", {"--displacement-noise", "--reversal-gate"}, kNonNegative},
-    {"track", {"--average", "--every", "--threads"}, kWhole},
+    {"track", {"--average", "--threads"}, kWhole},
     {"track", {"--broken-rows", "--model", "--loss"}, kNoNumber + Words{"-1", "0", ""}},
     {"track", {"--resume", "--overwrite"}, {"5", "nan", "text"}},
     {"track", {"--normal-load-column"}, {"[text]", "[nan]", "[N]", "9"}},

@@ -138,7 +138,7 @@ TEST_F(TrackCommand, WritesOverNothingUnasked) {
   const std::string whole = Whole();
   ExpectRefused(Track("whole.csv"), "--resume");
   EXPECT_EQ(ContentOf("whole.csv"), whole);
-  Done(Track("whole.csv") + "--overwrite --every 50");
+  Done(Track("whole.csv") + "--overwrite --average 50");
   EXPECT_THAT(Lines(ContentOf("whole.csv")), SizeIs(5));
 }
 
@@ -170,7 +170,6 @@ TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {
   };
   const auto energy = [](const json& all) { return all["accumulated_energy"].get<double>(); };
   const double whole = energy(summary({}));
-  EXPECT_NEAR(energy(summary("--every 4")), whole, 0.01 * whole);
   EXPECT_NEAR(energy(summary("--average 5")), whole, 1e-3 * whole);
   for (const char* options : {"--average 1", "--average 10"}) {
     const json quantities = summary(options)["quantities"];
@@ -197,7 +196,7 @@ TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
   // Two of 200 cycles would be one per cent.
   EXPECT_NEAR(spiked["accumulated_energy"].get<double>(), whole["accumulated_energy"].get<double>(),
               1e-3 * whole["accumulated_energy"].get<double>());
-  // The last nine before a batch are had from the table, too.
+  // The last closed cycle before a batch is had from the table, too.
   const std::string table = ContentOf("spiked_table.csv");
   for (const std::size_t tenths : {4U, 7U, 9U}) {
     ExpectCompleted(table.substr(0, table.size() * tenths / 10), table, "spiked.csv");

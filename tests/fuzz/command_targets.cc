@@ -35,7 +35,7 @@ constexpr std::string_view kOptionsOfFit =
     " | --rig-stiffness 1e8+-3% | --rig-stiffness 1e8+-1e7 | --terms slip_trend"
     " | --terms backlash,slip_trend | --encoding utf-16le";
 constexpr std::string_view kOptionsOfTrack =
-    "--average 2 | --every 3 | --compliance 4e-11 | --broken-rows skip"
+    "--average 2 | --compliance 4e-11 | --broken-rows skip"
     " | --fix backlash=2e-7 | --rig-stiffness 1e8+-3% | --terms slip_trend"
     " | --encoding latin1";
 

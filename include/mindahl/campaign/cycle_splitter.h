@@ -20,8 +20,8 @@ struct Cycle {
   std::size_t number = 1;      ///< number of the first of them, counted from 1
   std::size_t first_line = 0;  ///< line of the file, counted from 1
   loop::Record record;
-  /// Covers every sample and line number from the test's first up to the cycle's last: two tests
-  /// that differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
+  /// Covers every sample and line number from the test's first up to the one by which the cycle's
+  /// end was seen: two tests that differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
   std::uint64_t checksum = 0;
 };
 
@@ -55,7 +55,6 @@ class CycleSplitter {
 
  private:
   void Complete(std::size_t turning_point, std::vector<Cycle>& cycles);
-  void SumUpTo(std::size_t end);
 
   double gate_;
   std::size_t together_;
@@ -65,7 +64,6 @@ class CycleSplitter {
   std::size_t begin_ = 0;    // of the cycle, in those
   std::size_t turns_ = 0;    // turning points since the cycle's first, with it
   std::size_t cycles_ = 0;
-  std::size_t summed_ = 0;  // of the samples that are kept, those in the checksum
   std::uint64_t checksum_;
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,18 +52,18 @@ class Course {
 /// A change of a quantity: a trend along straight segments of its time history that go the same
 /// way, 1 % or more each, or a step from one to the next, 2 % or more.
 struct Change {
-  std::size_t first_cycle = 0;  ///< first cycle; a step has the one after it in both
+  std::size_t first_cycle = 0;  ///< a step has the first cycle after it in both
   std::size_t last_cycle = 0;
   double from = 0.0;
   double to = 0.0;
   /// Probability of such a slope under the hypothesis of none; or of such a step under no change,
   /// corrected for the choice of the place.
   double p_value = 1.0;
+
+  [[nodiscard]] bool is_step() const { return first_cycle == last_cycle; }
 };
 
 struct CourseDescription {
-  double first = 0.0;  ///< value of the first cycle, as the table has it
-  double last = 0.0;   ///< value of the last cycle
   /// Weighted means of the first three bins and of the last three; without a
   /// change that of all.
   double from = 0.0;
@@ -72,10 +71,9 @@ struct CourseDescription {
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
   /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
-  std::vector<Change> steps = {};
-  std::vector<Change> trends = {};
+  std::vector<Change> changes = {};  ///< in their order
 
-  [[nodiscard]] bool changed() const { return !steps.empty() || !trends.empty() || settled_at; }
+  [[nodiscard]] bool changed() const { return !changes.empty(); }
 };
 
 /// Divides a time history into straight segments: in two where the F test of two lines against one
@@ -92,7 +90,6 @@ struct TrackedQuantity {
   std::string_view symbol;     ///< "μ"; "" where the headline does not name it
   std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
   std::string_view error;      ///< column in proportion to its standard error
-  bool is_drawn = true;
 };
 
 /// Returns all of them, in the order of the report.
@@ -130,21 +127,14 @@ void Describe(std::vector<Evolution>& evolutions);
 ///
 /// A cycle that does not end where it began is no loop, and what is between its ends is no energy
 /// dissipated: a spike of the displacement, which turns it, makes two of one cycle with ten times
-/// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
-/// between samples, so that the parts of a cycle count for it together; before any was measured
-/// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
-/// A fit stands for the cycles since the last one too, the last also for those after it.
+/// its energy. Such count as much as the same number of samples of the last closed one, so that the
+/// parts of a cycle count for it together.
 struct DissipatedEnergy {
   std::size_t together = 1;  ///< cycles of one fit
-  double total = 0.0;        ///< up to the end of the last fit's cycles, or of all once finished
-  std::deque<double> of_a_step{};  ///< energies [J] of the last that were measured
-  std::size_t counted = 0;         ///< cycles that are in the total
-  double of_last = 0.0;            ///< energy [J] of a cycle of the last fit
+  double total = 0.0;        ///< up to the end of the last fit's cycles
+  double of_a_step = 0.0;    ///< energy [J] from sample to sample of the last closed cycle
 
   void Add(const CycleFit& fit);
-  /// Adds the cycles after the last fit.
-  /// @param cycles  of the test
-  void Finish(std::size_t cycles);
 };
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
@@ -153,15 +143,14 @@ struct DissipatedEnergy {
 /// radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
-/// Returns a sentence for each step and trend with the quantity's name, of more than `most` the
-/// largest and how many more there are.
+/// Returns a sentence for each step and trend with the quantity's name, the largest first, of more
+/// than `most` those and how many more there are.
 std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
                                           std::size_t most = 10);
 
-/// Returns a panel for each drawn quantity that has two bins or more, over the number of the cycle,
+/// Returns a panel for each quantity that has two bins or more, over the number of the cycle,
 /// logarithmic where there are a hundred or more: a line within the least and the greatest of the
-/// cycles that a point stands for, and the steps as marks. Of friction coefficient and slip force,
-/// which say the same, the first where it is known.
+/// cycles that a point stands for, and the steps as marks.
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions);
 
 /// Returns loops over each other, each named by its cycle.

@@ -21,7 +21,6 @@ struct TrackOptions {
   identification::FitOptions fit{};
   std::optional<double> compliance = std::nullopt;  ///< G* [1/Pa], for the contact radius
   std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
-  std::size_t every = 1;    ///< one fit of so many that there could be, >= 1
   std::size_t threads = 1;  ///< worker threads that fit, in addition to the calling one, >= 1
   std::size_t skipped = 0;  ///< fits at the beginning that are not made: a multiple of kBatch
   std::uint64_t seed = 0;   ///< initial value of the checksums, as CycleSplitter takes it
@@ -73,8 +72,7 @@ class Tracker {
   CycleSplitter splitter_;
   std::vector<Cycle> cycles_;  // that were split off at last
   std::vector<Cycle> batch_;
-  std::size_t pieces_ = 0;                                // that the splitter gave
-  std::size_t fits_ = 0;                                  // of those, to be made or skipped
+  std::size_t fits_ = 0;                                  // made or skipped
   std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
   std::optional<std::uint64_t> skipped_up_to_;
   std::vector<Cycle> log_;
