@@ -16,8 +16,7 @@ struct Validation {
 Json RowsOf(const std::vector<ValidationRow>& rows) {
   return report::ListOf(rows, [](const ValidationRow& row) {
     const auto if_drawn = [&](double value) { return row.cases == 0 ? Json() : Json(value); };
-    Json entry = {{"law", row.by_dahl ? "dahl" : "masing"},
-                  {"lambda", row.lambda},
+    Json entry = {{"lambda", row.lambda},
                   {"noise", row.noise},
                   {"cases", row.cases},
                   {"failures", row.failures},
@@ -50,14 +49,12 @@ void RunValidate(const Validation& validation, Console& console) {
                                               {"passed", passed},
                                               {"rows", rows},
                                               {"failed_cases", report.failed_cases}}),
-      fmt::format(
-          "Mindlin loops of {} contacts (seed {}), fitted with free alpha by Masing's law and,\n"
-          "from their first extreme on, by Dahl's own: {} fits; largest errors of\n"
-          "sigma/(8a/G*), alpha - 1/3 and Tc/(mu N), of Dahl's own those of the same "
-          "loop\n\n{}\n{}\n",
-          validation.options.cases, validation.options.seed, report.fits, report::TableText(rows),
-          passed ? "passed: every case within its tolerance"
-                 : fmt::format("FAILED: {} of {} fits", report.failures, report.fits)));
+      fmt::format("Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits;\n"
+                  "largest errors of sigma/(8a/G*), alpha - 1/3 and Tc/(mu N)\n\n{}\n{}\n",
+                  validation.options.cases, validation.options.seed, report.fits,
+                  report::TableText(rows),
+                  passed ? "passed: every case within its tolerance"
+                         : fmt::format("FAILED: {} of {} fits", report.failures, report.fits)));
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   console.exit_status = passed ? kDone : kNotEstablished;
 }
@@ -69,9 +66,8 @@ void AddValidateCommand(CLI::App& app, Console& console) {
   CLI::App& command = AddCommand(
       app, "validate",
       "Tests the mapping: fits Mindlin loops of many contacts at many\n"
-      "amplitudes and noise levels, by Masing's law and by Dahl's own, and\n"
-      "compares sigma with 8a/G*, alpha with 1/3 and Tc with mu N. Exit\n"
-      "status 3 when a case misses its tolerance.",
+      "amplitudes and noise levels, and compares sigma with 8a/G*, alpha with\n"
+      "1/3 and Tc with mu N. Exit status 3 when a case misses its tolerance.",
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddCount("--cases", options->options.cases, "contacts to draw");

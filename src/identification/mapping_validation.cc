@@ -14,7 +14,6 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 
@@ -76,27 +75,6 @@ Record MindlinRecord(const Case& drawn) {
   return record;
 }
 
-/// A loop, how it is fitted, and what should come back.
-struct Trial {
-  Record record;
-  FitOptions options;
-  models::BranchLaw truth;
-};
-
-/// The whole loop by Masing's law, or what follows its first extreme by Dahl's own.
-Trial TrialOf(Record record, const Case& drawn, bool by_dahl) {
-  const models::BranchLaw law = contact::MapMindlinToDahl(drawn.contact);
-  if (!by_dahl) return {std::move(record), {}, law};
-  const auto first = static_cast<std::ptrdiff_t>(drawn.excitation.samples_per_cycle / 4);
-  for (auto* column : {&record.time, &record.displacement, &record.force}) {
-    column->erase(column->begin(), column->begin() + first);
-  }
-  FitOptions options;
-  options.model = models::FindFrictionModel("dahl");
-  options.initial_states = {models::InitialState::kSteady};
-  return {std::move(record), options, models::DahlEquivalent(law, drawn.excitation.amplitude)};
-}
-
 /// How far a fit is from the truth.
 struct Errors {
   std::array<double, kValidatedParameters.size()> of_contact{};  // of σ, α and Tc
@@ -130,13 +108,14 @@ Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
 
 /// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
 /// unlike an error over a standard error it also holds where the likelihood is not a parabola.
-double StandardizedDistance(const Trial& trial, const FitResult& fit) {
-  FitOptions options = trial.options;
+double StandardizedDistance(const Record& record, const models::BranchLaw& truth,
+                            const FitResult& fit) {
+  FitOptions options;
   options.initial_states = {fit.initial_state};
-  options.fixed = {{"sigma", trial.truth.tangential_stiffness},
-                   {"alpha", trial.truth.shape_exponent},
-                   {"slip_force", trial.truth.slip_force}};
-  const FitResult at_truth = Fit({&trial.record, 1}, options, Depth::kEstimate);
+  options.fixed = {{"sigma", truth.tangential_stiffness},
+                   {"alpha", truth.shape_exponent},
+                   {"slip_force", truth.slip_force}};
+  const FitResult at_truth = Fit({&record, 1}, options, Depth::kEstimate);
   const double ratio = at_truth.rms / fit.rms;
   return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
 }
@@ -171,12 +150,10 @@ void RequireValidation(const ValidationOptions& options) {
 std::string Describe(const Case& drawn, std::size_t index, const ValidationRow& row,
                      const FitResult& fit, const Errors& errors) {
   return fmt::format(
-      "case {}{}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} "
-      "cycles: "
-      "{}errors sigma {:.2e}, alpha {:.2e}, slip_force {:.2e}; {:.1f} standard errors",
-      index, row.by_dahl ? " by Dahl's own law" : "", row.lambda, row.noise, drawn.normal_load,
-      drawn.contact.contact_radius, drawn.contact.tangential_compliance, drawn.friction_coefficient,
-      drawn.excitation.cycles,
+      "case {}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} "
+      "cycles: {}errors sigma {:.2e}, alpha {:.2e}, slip_force {:.2e}; {:.1f} standard errors",
+      index, row.lambda, row.noise, drawn.normal_load, drawn.contact.contact_radius,
+      drawn.contact.tangential_compliance, drawn.friction_coefficient, drawn.excitation.cycles,
       fit.converged ? "" : fmt::format("not converged ({}), ", fit.solver.message),
       errors.of_contact[0], errors.of_contact[1], errors.of_contact[2], errors.standardized);
 }
@@ -192,39 +169,34 @@ double NoiseFreeTolerance(double lambda) {
 ValidationReport ValidateMapping(const ValidationOptions& options) {
   RequireValidation(options);
   ValidationReport report;
-  for (const bool by_dahl : {false, true}) {
-    for (const double noise : options.noise_levels) {
-      for (const double lambda : options.lambdas) {
-        report.rows.push_back(
-            {.by_dahl = by_dahl,
-             .lambda = lambda,
-             .noise = noise,
-             .tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated});
-      }
+  for (const double noise : options.noise_levels) {
+    for (const double lambda : options.lambdas) {
+      report.rows.push_back(
+          {.lambda = lambda,
+           .noise = noise,
+           .tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated});
     }
   }
   Draws draws(options.seed);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = DrawCase(options, index, draws);
     const Record clean = MindlinRecord(drawn);
+    const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
     for (std::size_t level = 0; level < options.noise_levels.size(); ++level) {
       Record noisy = clean;
       const double noise = options.noise_levels[level];
       for (double& force : noisy.force) force += noise * std::abs(peak) * draws.Normal();
+      const FitResult fit = Fit({&noisy, 1});
+      Errors errors = Compare(fit, truth);
+      if (noise > 0 && fit.converged) errors.standardized = StandardizedDistance(noisy, truth, fit);
+      ++report.fits;
       const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
-      for (const bool by_dahl : {false, true}) {
-        const Trial trial = TrialOf(noisy, drawn, by_dahl);
-        const FitResult fit = Fit({&trial.record, 1}, trial.options);
-        Errors errors = Compare(fit, trial.truth);
-        if (noise > 0 && fit.converged) errors.standardized = StandardizedDistance(trial, fit);
-        ++report.fits;
-        ValidationRow& row = report.rows[place + (by_dahl ? report.rows.size() / 2 : 0)];
-        if (Add(errors, fit.converged, row)) continue;
-        ++report.failures;
-        report.failed_cases.push_back(Describe(drawn, index, row, fit, errors));
-      }
+      ValidationRow& row = report.rows[place];
+      if (Add(errors, fit.converged, row)) continue;
+      ++report.failures;
+      report.failed_cases.push_back(Describe(drawn, index, row, fit, errors));
     }
   }
   return report;

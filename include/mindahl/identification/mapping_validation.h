@@ -9,9 +9,7 @@
 
 namespace mindahl::identification {
 
-/// A sweep that tests whether fits of Mindlin loops return σ = 8a/G* and α = 1/3: by Masing's law,
-/// and by Dahl's own (eq. 10) on the steady part, of which the same loop is that of
-/// models::DahlEquivalent().
+/// A sweep that tests whether fits of Mindlin loops return σ = 8a/G* and α = 1/3.
 struct ValidationOptions {
   std::size_t cases = 500;  ///< contacts; each is fitted at every noise level
   std::uint64_t seed = 1;
@@ -33,16 +31,15 @@ inline constexpr double kStandardErrorsTolerated = 6.0;
 inline constexpr std::array<std::string_view, 3> kValidatedParameters = {"sigma", "alpha",
                                                                          "slip_force"};
 
-/// All cases by one law at one amplitude and noise level.
+/// All cases at one amplitude and noise level.
 struct ValidationRow {
-  bool by_dahl = false;  ///< fitted with Dahl's own law
   double lambda = 0.0;
   double noise = 0.0;
   std::size_t cases = 0;
   std::size_t failures = 0;      ///< not converged, or an error above the tolerance
   std::size_t undetermined = 0;  ///< a parameter reported as not identifiable
   double tolerance = 0.0;        ///< noise-free: on the errors; with noise: in standard errors
-  /// Largest |σ/(8a/G*) − 1|, |α − 1/3| and |Tc/(μN) − 1|; of Dahl's own law those of its own.
+  /// Largest |σ/(8a/G*) − 1|, |α − 1/3| and |Tc/(μN) − 1|
   std::array<double, kValidatedParameters.size()> errors = {};
   double worst_standardized = 0.0;  ///< with noise: largest distance of truth and fit, likewise
   std::size_t intervals = 0;        ///< with noise: 95 % intervals that were stated
@@ -50,7 +47,7 @@ struct ValidationRow {
 };
 
 struct ValidationReport {
-  std::vector<ValidationRow> rows;  ///< in order of law, noise level, amplitude
+  std::vector<ValidationRow> rows;  ///< in order of noise level, amplitude
   std::size_t fits = 0;
   std::size_t failures = 0;
   std::vector<std::string> failed_cases;  ///< description of each failed case with its error
@@ -59,7 +56,7 @@ struct ValidationReport {
 /// Draws contacts with N in 1e-6 … 1e5 N, a in 1e-8 … 3e-2 m, G* in 1e-12 … 1e-8 1/Pa (all
 /// log-uniform), μ in 0.05 … 1.2, one to four cycles, both starting directions, sine and triangle;
 /// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
-/// fits them with free α by either law and compares.
+/// fits them with free α and compares.
 /// @throws InvalidArgument for options out of range
 ValidationReport ValidateMapping(const ValidationOptions& options);
 
