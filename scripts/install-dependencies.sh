@@ -18,7 +18,6 @@ packages=(
   zlib1g-dev libboost-dev libmd-dev
   librsvg2-bin jq python3 help2man
 )
-node_packages=()
 for group in "$@"; do
   case $group in
     --tests)
@@ -32,8 +31,6 @@ for group in "$@"; do
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers)
       packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps gnuplot-nox)
-      command -v npm >/dev/null || packages+=(nodejs npm)
-      node_packages+=(@mujoco/mujoco@3)  # no Debian package: Google's WebAssembly build
       ;;
     --coverage) packages+=(gcovr) ;;
     --clang) packages+=(clang-19 clang-tidy-19) ;;
@@ -60,13 +57,10 @@ for package in "${packages[@]}"; do
     missing+=("$package")
   fi
 done
-for package in "${node_packages[@]}"; do
-  if command -v npm >/dev/null && [ -d "$(npm root -g)/${package%@*}" ]; then node_packages=(); fi
-done
-if [ ${#missing[@]} -eq 0 ] && [ ${#node_packages[@]} -eq 0 ]; then exit 0; fi
+if [ ${#missing[@]} -eq 0 ]; then exit 0; fi
 
 if ! command -v apt-get >/dev/null; then
-  echo "install-dependencies: apt-get not found; install by hand: ${missing[*]} ${node_packages[*]}" >&2
+  echo "install-dependencies: apt-get not found; install by hand: ${missing[*]}" >&2
   exit 1
 fi
 sudo=()
@@ -77,12 +71,7 @@ if [ "$(id -u)" -ne 0 ]; then
   fi
   sudo=(sudo)
 fi
-echo "installing ${missing[*]} ${node_packages[*]}"
-if [ ${#missing[@]} -gt 0 ]; then
-  "${sudo[@]}" apt-get update -q
-  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -q --no-install-recommends "${missing[@]}"
-fi
-if [ ${#node_packages[@]} -gt 0 ]; then
-  "${sudo[@]}" npm install -g --no-audit --no-fund "${node_packages[@]}"
-fi
+echo "installing ${missing[*]}"
+"${sudo[@]}" apt-get update -q
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -q --no-install-recommends "${missing[@]}"

@@ -124,7 +124,6 @@ def convert(
     amplitude: Optional[float] = None, alpha: Optional[float] = None, from_: Optional[str] = None,
     tolerance: float = 0.01, elements: int = 8, beta: float = 0.5,
     normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
-    viscous: Optional[float] = None,
 ) -> Conversion:
     """Converts a contact's steady loop to another law or program.
 
@@ -132,9 +131,9 @@ def convert(
     sigma [N/m], alpha [-] (1/3), slip_force Tc [N]: parameters of the law from_, "masing" (default)
         or "dahl".
     amplitude: X [m] of the contact's steady loop.
-    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps" or "mujoco".
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan" or "lammps".
     tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
-    normal_load [N], contact_radius [m]: for "lammps". viscous [N s/m]: for "lugre", "mujoco".
+    normal_load [N], contact_radius [m]: for "lammps".
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
         None for "lammps" without a normal load.
     Raises ValueError naming the quantity, its value and the rule.

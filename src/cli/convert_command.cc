@@ -42,18 +42,15 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
   return *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl");
 }
 
-/// Returns the terms of a fit that the target does not have: all but what a rig takes, and a
-/// viscous force where the target has one.
-std::vector<std::string> TermsLeftOut(const Json& fit, const TargetRow& target) {
+/// Returns the terms of a fit that no target has: all but what a rig takes.
+std::vector<std::string> TermsLeftOut(const Json& fit) {
   auto left_out = fit.value(Json::json_pointer("/terms/added"), std::vector<std::string>());
-  std::erase_if(left_out, [&](const std::string& name) {
-    return name == "rig_stiffness" || (name == "viscous" && target.Uses(name));
-  });
+  std::erase(left_out, "rig_stiffness");
   return left_out;
 }
 
-/// Takes law, amplitude and viscous force from a fit where they are not given.
-void TakeFit(const Json& fit, const TargetRow& target, ConvertOptions& request) {
+/// Takes law and amplitude from a fit where they are not given.
+void TakeFit(const Json& fit, ConvertOptions& request) {
   if (request.from.empty()) request.from = report::At(fit, "/model") == "dahl" ? "dahl" : "masing";
   const auto take = [&](std::optional<double>& value, const std::string& place) {
     const Json found = report::At(fit, place);
@@ -67,9 +64,6 @@ void TakeFit(const Json& fit, const TargetRow& target, ConvertOptions& request) 
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
     if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
   }
-  std::optional<double> viscous;
-  if (target.Uses("viscous")) take(viscous, "/parameters/viscous/value");
-  if (request.normal.viscous == 0) request.normal.viscous = std::max(viscous.value_or(0.0), 0.0);
   const LawOptions& law = request.law;
   if (request.amplitude || !law.sigma || !law.slip_force) return;
   take(request.amplitude, "/measured/amplitude");
@@ -102,8 +96,8 @@ void RunConvert(ConvertOptions request, Console& console) {
   std::vector<std::string> left_out;
   if (!request.fit.empty()) {
     const Json fit = ReadFit(request.fit);
-    TakeFit(fit, target, request);
-    left_out = TermsLeftOut(fit, target);
+    TakeFit(fit, request);
+    left_out = TermsLeftOut(fit);
     Require(request.law.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
@@ -207,8 +201,6 @@ void AddConvertCommand(CLI::App& app, Console& console) {
                      "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
   result.AddQuantity("--contact-radius", options->normal.contact_radius,
                      "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
-  result.Add("--viscous", options->normal.viscous,
-             "force per speed [N s/m], by default the fit's, for --to lugre and mujoco", "C");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");

@@ -27,7 +27,7 @@ constexpr std::array kDahl = {ParameterRow{"sigma", "k", "N/m", "dT/dx at T = 0"
                               kMasing[2]};
 constexpr std::array kLuGre = {ParameterRow{"sigma0", "k", "N/m", "bristles' stiffness"},
                                ParameterRow{"sigma1", "zero", "N s/m", "bristles' damping"},
-                               ParameterRow{"sigma2", "viscous", "N s/m", "viscous friction"},
+                               ParameterRow{"sigma2", "zero", "N s/m", "viscous friction"},
                                ParameterRow{"Fc", "Tc", "N", "Coulomb's force"},
                                ParameterRow{"Fs", "Tc", "N", "static force: no Stribeck effect"}};
 constexpr std::array kBoucWen = {ParameterRow{"k", "k", "N/m", "stiffness k of force = k z"},
@@ -43,18 +43,13 @@ constexpr std::array kLammps = {ParameterRow{"kt", "k", "N/m", "of tangential li
                                 ParameterRow{"kt_mindlin", "k_per_a", "Pa",
                                              "kt of tangential mindlin, whose stiffness is kt a"},
                                 ParameterRow{"mu", "mu", "-", "friction, Tc/N"}};
-constexpr std::array kMujoco = {
-    ParameterRow{"stiffness", "k", "N/m", "bristles' stiffness"},
-    ParameterRow{"coulomb", "Tc", "N", "Coulomb's force; static force the same"},
-    ParameterRow{"knee", "knee", "m", "h of a plugin's dz/dt = (v - |v| z)/h, force = Fc z"},
-    ParameterRow{"damping", "viscous", "N s/m", "force per speed"}};
 
 using Lines = std::string_view;
 constexpr std::array<Lines, 1> kMasingLines = {
     "--model mindlin-dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"};
 constexpr std::array<Lines, 1> kDahlLines = {
     "--model dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"};
-constexpr std::array<Lines, 5> kLuGreLines = {"sigma0 = {k}", "sigma1 = 0", "sigma2 = {viscous}",
+constexpr std::array<Lines, 5> kLuGreLines = {"sigma0 = {k}", "sigma1 = 0", "sigma2 = 0",
                                               "Fc = {Tc}", "Fs = {Tc}"};
 constexpr std::array<Lines, 2> kBoucWenLines = {
     "# OpenSees, force in N and displacement in m: tag alpha ko n gamma beta Ao deltaA deltaNu "
@@ -66,24 +61,16 @@ constexpr std::array<Lines, 3> kLammpsLines = {
     "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
     "tangential linear_history {k} 0.0 {mu}",
     "tangential mindlin {k_per_a} 0.0 {mu}  # instead, where the radius changes with the load"};
-constexpr std::array<Lines, 3> kMujocoLines = {
-    "<!-- MuJoCo, in actuator: the joint's friction, a motor without input; lugre is -->",
-    "<!-- stiffness, damping, Coulomb's force; motorconst^2/resistance is the damping -->",
-    "<dcmotor joint=\"joint\" input=\"none\" motorconst=\"1\" resistance=\"{resistance}\" "
-    "lugre=\"{k} 0 {Tc}\"/>"};
 
 constexpr std::array kTargets = {
     TargetRow{"masing", "Masing's law (mindlin-dahl)", Form::kMasing, kMasing, kMasingLines},
     TargetRow{"dahl", "Dahl's own law", Form::kDahl, kDahl, kDahlLines},
     TargetRow{"lugre", "LuGre without rate: Dahl's law of α = 1", Form::kExponential, kLuGre,
-              kLuGreLines, "# "},
-    TargetRow{"bouc-wen", "Bouc's and Wen's law", Form::kBoucWen, kBoucWen, kBoucWenLines, "# "},
-    TargetRow{"iwan", "Jenkins elements in parallel", Form::kElements, kElements, kElementLines,
-              "# "},
+              kLuGreLines},
+    TargetRow{"bouc-wen", "Bouc's and Wen's law", Form::kBoucWen, kBoucWen, kBoucWenLines},
+    TargetRow{"iwan", "Jenkins elements in parallel", Form::kElements, kElements, kElementLines},
     TargetRow{"lammps", "a tangential spring with Coulomb's limit", Form::kSpring, kLammps,
-              kLammpsLines, "# "},
-    TargetRow{"mujoco", "MuJoCo's LuGre without rate: Dahl's law of α = 1", Form::kExponential,
-              kMujoco, kMujocoLines, "<!-- ", " -->"},
+              kLammpsLines},
 };
 
 SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& options) {
@@ -136,12 +123,7 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
 /// Returns the values of a conversion that are known, by their keys.
 std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
                                             const NormalContact& contact) {
-  constexpr double kNoDamping = 1e15;  // [Ω], a resistance: damping of 1e-15 N s/m
-  std::map<std::string_view, double> values = {
-      {"zero", 0.0},
-      {"one", 1.0},
-      {"viscous", contact.viscous},
-      {"resistance", contact.viscous > 0 ? 1 / contact.viscous : kNoDamping}};
+  std::map<std::string_view, double> values = {{"zero", 0.0}, {"one", 1.0}};
   double stiffness = 0.0;
   double slip_force = 0.0;
   if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&conversion.law)) {
@@ -165,7 +147,6 @@ std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
   }
   values["k"] = stiffness;
   values["Tc"] = slip_force;
-  values["knee"] = slip_force / stiffness;
   if (contact.contact_radius) values["k_per_a"] = stiffness / *contact.contact_radius;
   if (contact.normal_load) values["mu"] = slip_force / *contact.normal_load;
   return values;
@@ -174,10 +155,6 @@ std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
 }  // namespace
 
 std::span<const TargetRow> Targets() { return kTargets; }
-
-bool TargetRow::Uses(std::string_view key) const {
-  return std::ranges::find(parameters, key, &ParameterRow::key) != parameters.end();
-}
 
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options) {
@@ -207,18 +184,8 @@ Conversion Convert(const ModelLaw& contact, const TargetRow& target,
 void Validate(const NormalContact& contact, const TargetRow& target) {
   if (contact.normal_load) RequirePositive("--normal-load [N]", *contact.normal_load);
   if (contact.contact_radius) RequirePositive("--contact-radius [m]", *contact.contact_radius);
-  RequireNonNegative("--viscous [N s/m]", contact.viscous);
-  const auto require_effect = [&](bool is_given, std::string_view option, std::string_view key) {
-    if (!is_given || target.Uses(key)) return;
-    std::string users;
-    for (const TargetRow& row : kTargets) {
-      if (row.Uses(key)) users += fmt::format("{}{}", users.empty() ? "" : ", ", row.name);
-    }
-    throw InputError(fmt::format("{} has no effect unless --to is one of {}", option, users));
-  };
-  require_effect(contact.normal_load.has_value(), "--normal-load", "mu");
-  require_effect(contact.contact_radius.has_value(), "--contact-radius", "k_per_a");
-  require_effect(contact.viscous > 0, "--viscous", "viscous");
+  if (!(contact.normal_load || contact.contact_radius) || target.form == Form::kSpring) return;
+  throw InputError("--normal-load and --contact-radius have no effect unless --to is lammps");
 }
 
 std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRow& target,
@@ -236,7 +203,7 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRo
 
 std::vector<std::string> InputLines(const Conversion& conversion, const TargetRow& target,
                                     const NormalContact& contact, std::string_view remark) {
-  if (target.Uses("mu") && !contact.normal_load) {
+  if (target.form == Form::kSpring && !contact.normal_load) {
     throw InputError("--input-lines for LAMMPS need --normal-load: friction coefficient Tc/N");
   }
   fmt::dynamic_format_arg_store<fmt::format_context> store;
@@ -244,9 +211,9 @@ std::vector<std::string> InputLines(const Conversion& conversion, const TargetRo
     store.push_back(fmt::arg(std::string(key).c_str(), value));
   }
   std::vector<std::string> lines;
-  if (!remark.empty() && !target.comment_begin.empty()) {
-    lines.push_back(fmt::format("{}{}{}", target.comment_begin, remark, target.comment_end));
-  }
+  // The laws here are options of simulate, which have no comments.
+  const bool has_comments = target.form != Form::kMasing && target.form != Form::kDahl;
+  if (!remark.empty() && has_comments) lines.push_back(fmt::format("# {}", remark));
   for (const std::string_view line : target.lines) {
     if (line.find("{k_per_a}") != std::string_view::npos && !contact.contact_radius) continue;
     lines.push_back(fmt::vformat(line, store));

@@ -91,16 +91,10 @@ TEST_F(Convert, SaysWhatOfAFitTheTargetHasNot) {
       "asymmetry": {"value": -0.2}, "viscous": {"value": 12.5}},
       "terms": {"added": ["rig_stiffness", "asymmetry", "viscous"]},
       "measured": {"amplitude": 2e-6}})");
-  const json joint = JsonOf("convert --to mujoco " + fit);
-  EXPECT_EQ(joint["left_out"], json({"asymmetry"}));
-  EXPECT_EQ(Value(joint, "damping"), 12.5);
-  EXPECT_EQ(Value(JsonOf("convert --to mujoco --viscous 3 " + fit), "damping"), 3.0);
   EXPECT_EQ(JsonOf("convert --to dahl " + fit)["left_out"], json({"asymmetry", "viscous"}));
   EXPECT_THAT(Done("convert --to dahl --input-lines - " + fit + " --json " + Path("c.json")).out +
                   Done("convert --to dahl " + fit).out,
               HasSubstr("of the law alone: without the fit's asymmetry, viscous\n"));
-  EXPECT_THAT(Done("convert --to mujoco --input-lines - " + fit).out,
-              HasSubstr("without the fit's asymmetry -->"));
 }
 
 TEST_F(Convert, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
@@ -129,9 +123,7 @@ TEST_F(Convert, RefusesWhatItsTargetHasNot) {
     };
     EXPECT_EQ(refusal(" --normal-load 10").empty(), to == "lammps") << to;
     EXPECT_EQ(refusal(" --contact-radius 1e-3").empty(), to == "lammps") << to;
-    EXPECT_EQ(refusal(" --viscous 2").empty(), to == "lugre" || to == "mujoco") << to;
     EXPECT_EQ(refusal(""), "") << to;
-    EXPECT_THAT(refusal(" --viscous -1"), HasSubstr("--viscous [N s/m]"));
   }
 }
 

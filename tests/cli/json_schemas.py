@@ -93,7 +93,6 @@ COMMANDS = [
       for law in ("masing", "dahl", "lugre", "bouc-wen", "iwan")],
     ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to lammps --normal-load 50 "
      "--contact-radius 3e-4", 0),
-    ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to mujoco --viscous 3", 0),
     ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 "

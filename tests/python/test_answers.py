@@ -93,7 +93,7 @@ def test_contact_is_the_program_s(keywords, options):
 
 
 @pytest.mark.parametrize(
-    "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "mujoco"])
+    "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps"])
 def test_convert_is_the_program_s_and_has_its_lines(to):
     load = {"normal_load": 100} if to == "lammps" else {}
     options = [*LAW_OPTIONS, "--amplitude", "1.2e-6", "--to", to, *(["--normal-load", 100] if load else [])]

@@ -37,11 +37,6 @@ struct TargetRow {
   std::span<const ParameterRow> parameters;
   /// Lines that it reads, with keys of values in braces; one whose value is not known is left out.
   std::span<const std::string_view> lines;
-  std::string_view comment_begin = {};  ///< "" if its input has no comments
-  std::string_view comment_end = {};
-
-  /// True if it has a parameter with this key.
-  [[nodiscard]] bool Uses(std::string_view key) const;
 };
 
 /// Returns all targets, in the order of the documentation.
@@ -91,10 +86,9 @@ struct Parameter {
 struct NormalContact {
   std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
   std::optional<double> contact_radius = {};  ///< a [m], > 0: LAMMPS' Mindlin stiffness is kt·a
-  double viscous = 0.0;                       ///< [N s/m], >= 0: damping of a joint, σ₂ of LuGre
 };
 
-/// @throws InputError for what belongs to another target, InvalidArgument for values out of range
+/// @throws InputError for another target than LAMMPS, InvalidArgument for values out of range
 void Validate(const NormalContact& contact, const TargetRow& target);
 
 /// Returns the parameters of a conversion, in the target's own names and units.
