@@ -80,9 +80,7 @@ Json PointRows(const std::vector<WorkPrecision>& points) {
             {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
             {"cost_ns_per_sample", point.cost},
             {"max_force_error", point.precision.max_force},
-            {"rms_force_error", point.precision.rms_force},
-            {"energy_error", NumberOrNull(point.precision.energy)},
-            {"pareto", point.is_on_front}};
+            {"energy_error", NumberOrNull(point.precision.energy)}};
   });
 }
 

@@ -116,24 +116,13 @@ std::vector<Approximation> AllApproximations(const BranchLaw& law) {
 
 Precision Compare(std::span<const double> exact, std::span<const double> displacement,
                   std::span<const double> force) {
-  RequireSameSize("displacement", displacement.size(), "force", force.size());
-  RequireSameSize("exact force", exact.size(), "force", force.size());
-  if (force.empty()) throw InvalidArgument("the drive is empty: must have samples");
   double peak = 0.0;
   for (const double at : exact) peak = std::max(peak, std::abs(at));
-  const double scale = peak > 0 ? peak : 1.0;
   Precision precision;
-  long double squares = 0.0L;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    const double error = (force[i] - exact[i]) / scale;
-    // A force that is not a number is infinitely wrong; std::max would pass it over.
-    precision.max_force =
-        std::max(precision.max_force,
-                 std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error));
-    squares += static_cast<long double>(error) * error;
+    const double error = std::abs(force[i] - exact[i]) / (peak > 0 ? peak : 1.0);
+    precision.max_force = std::max(precision.max_force, error);
   }
-  precision.rms_force =
-      static_cast<double>(std::sqrt(squares / static_cast<long double>(force.size())));
   const double lost = Work(displacement, exact);
   if (lost != 0) precision.energy = std::abs(Work(displacement, force) / lost - 1);
   return precision;
@@ -151,23 +140,7 @@ std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Driv
                       .precision = Compare(exact, drive.displacement, force),
                       .cost = kSample + cost / static_cast<double>(force.size())});
   }
-  const std::vector<bool> front = ParetoFront(points);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i].is_on_front = front[i];
   return points;
-}
-
-std::vector<bool> ParetoFront(std::span<const WorkPrecision> points) {
-  std::vector<bool> on_front(points.size(), true);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double error = points[i].precision.max_force;
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      const double other = points[j].precision.max_force;
-      const bool no_worse = i != j && other <= error && points[j].cost <= points[i].cost;
-      const bool better = other < error || points[j].cost < points[i].cost || j < i;
-      if (no_worse && better) on_front[i] = false;
-    }
-  }
-  return on_front;
 }
 
 std::size_t CheapestWithin(double tolerance, bool energy_counts,
