@@ -23,7 +23,6 @@ struct ConvertOptions {
   std::string from;                 // "masing", "dahl" or "": that of the fit, else masing
   std::string to;
   convert::ConversionOptions options = {};
-  convert::NormalContact normal = {};
   std::string json_path;
   std::string input_lines_path;
 };
@@ -107,13 +106,11 @@ void RunConvert(ConvertOptions request, Console& console) {
   const double amplitude = Require(request.amplitude, "--amplitude", request);
   request.options.amplitude = amplitude;
   const double tolerance = request.options.tolerance;
-  Validate(request.normal, target);
   const convert::Conversion made =
       convert::Convert({&ModelOf(request), law}, target, request.options);
   Json parameters = Json::object();
-  for (const convert::Parameter& parameter : ParametersOf(made, target, request.normal)) {
-    parameters[parameter.name] = {
-        {"value", parameter.value}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
+  for (const auto& [row, value] : made.parameters) {
+    parameters[row.name] = {{"value", value}, {"unit", row.unit}, {"meaning", row.meaning}};
   }
   Json elements = Json::array();
   if (const auto* jenkins = std::get_if<methods::IwanElements>(&made.law)) {
@@ -155,9 +152,14 @@ void RunConvert(ConvertOptions request, Console& console) {
        {"left_out", left_out}});
   const std::string& lines_path = request.input_lines_path;
   if (!lines_path.empty()) {
-    const std::vector<std::string> lines =
-        convert::InputLines(made, target, request.normal, error_text);
-    WriteText(fmt::format("{}\n", fmt::join(lines, "\n")), lines_path, console);
+    if (made.input_lines.empty()) {
+      Refuse("--input-lines for LAMMPS need --normal-load: friction coefficient Tc/N");
+    }
+    // What is for mindahl simulate are options, which have no comments.
+    const bool has_comments = !made.input_lines.front().starts_with("--");
+    WriteText(fmt::format("{}{}\n", has_comments ? "# " + error_text + '\n' : "",
+                          fmt::join(made.input_lines, "\n")),
+              lines_path, console);
   }
   WriteAnswer(request.json_path, console, json, lines_path == "-" ? "" : text);
 }
@@ -197,9 +199,9 @@ void AddConvertCommand(CLI::App& app, Console& console) {
                   10'000);
   result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
-  result.AddQuantity("--normal-load", options->normal.normal_load,
+  result.AddQuantity("--normal-load", options->options.normal_load,
                      "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
-  result.AddQuantity("--contact-radius", options->normal.contact_radius,
+  result.AddQuantity("--contact-radius", options->options.contact_radius,
                      "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,

@@ -120,13 +120,13 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
   return inside;
 }
 
-/// Returns the values of a conversion that are known, by their keys.
-std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
-                                            const NormalContact& contact) {
+/// Returns the values of a law that are known, by their keys.
+std::map<std::string_view, double> ValuesOf(const SteadyLaw& law,
+                                            const ConversionOptions& options) {
   std::map<std::string_view, double> values = {{"zero", 0.0}, {"one", 1.0}};
   double stiffness = 0.0;
   double slip_force = 0.0;
-  if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&conversion.law)) {
+  if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&law)) {
     stiffness = bouc_wen->stiffness;
     slip_force = bouc_wen->slip_force;
     // γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
@@ -134,22 +134,59 @@ std::map<std::string_view, double> ValuesOf(const Conversion& conversion,
     values["n"] = bouc_wen->exponent;
     values["beta"] = bouc_wen->beta * per_travel;
     values["gamma"] = (1 - bouc_wen->beta) * per_travel;
-  } else if (const auto* elements = std::get_if<IwanElements>(&conversion.law)) {
+  } else if (const auto* elements = std::get_if<IwanElements>(&law)) {
     for (std::size_t j = 0; j < elements->size(); ++j) {
       stiffness += elements->stiffness[j];
       slip_force += elements->slip_force[j];
     }
   } else {
-    const models::BranchLaw& law = std::get<ModelLaw>(conversion.law).law;
-    stiffness = law.tangential_stiffness;
-    slip_force = law.slip_force;
-    values["alpha"] = law.shape_exponent;
+    const models::BranchLaw& of_model = std::get<ModelLaw>(law).law;
+    stiffness = of_model.tangential_stiffness;
+    slip_force = of_model.slip_force;
+    values["alpha"] = of_model.shape_exponent;
   }
   values["k"] = stiffness;
   values["Tc"] = slip_force;
-  if (contact.contact_radius) values["k_per_a"] = stiffness / *contact.contact_radius;
-  if (contact.normal_load) values["mu"] = slip_force / *contact.normal_load;
+  if (options.contact_radius) values["k_per_a"] = stiffness / *options.contact_radius;
+  if (options.normal_load) values["mu"] = slip_force / *options.normal_load;
   return values;
+}
+
+/// Returns the lines that the target reads: those of which every value is known.
+std::vector<std::string> LinesOf(const SteadyLaw& law, const TargetRow& target,
+                                 const std::map<std::string_view, double>& values) {
+  fmt::dynamic_format_arg_store<fmt::format_context> store;
+  for (const auto& [key, value] : values) {
+    store.push_back(fmt::arg(std::string(key).c_str(), value));
+  }
+  std::vector<std::string> lines;
+  for (const std::string_view line : target.lines) {
+    const bool lacks_radius = line.find("{k_per_a}") != line.npos && !values.contains("k_per_a");
+    if (!lacks_radius) lines.push_back(fmt::vformat(line, store));
+  }
+  if (const auto* elements = std::get_if<IwanElements>(&law)) {
+    std::string tags;
+    for (std::size_t j = 0; j < elements->size(); ++j) {
+      lines.push_back(fmt::format("uniaxialMaterial ElasticPP {} {} {}", j + 1,
+                                  elements->stiffness[j],
+                                  elements->slip_force[j] / elements->stiffness[j]));
+      tags += fmt::format(" {}", j + 1);
+    }
+    lines.push_back(fmt::format("uniaxialMaterial Parallel {}{}", elements->size() + 1, tags));
+  }
+  return lines;
+}
+
+void RequireOptions(const TargetRow& target, const ConversionOptions& options) {
+  RequirePositive("amplitude [m]", options.amplitude);
+  if (!(options.tolerance > 0 && options.tolerance < 1)) {
+    ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1)");
+  }
+  if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
+  if (options.contact_radius) RequirePositive("--contact-radius [m]", *options.contact_radius);
+  if ((options.normal_load || options.contact_radius) && target.form != Form::kSpring) {
+    throw InputError("--normal-load and --contact-radius have no effect unless --to is lammps");
+  }
 }
 
 }  // namespace
@@ -162,10 +199,7 @@ Conversion Convert(const ModelLaw& contact, const TargetRow& target,
     throw InvalidArgument("the contact must follow Masing's law or Dahl's own");
   }
   models::Validate(contact.law);
-  RequirePositive("amplitude [m]", options.amplitude);
-  if (!(options.tolerance > 0 && options.tolerance < 1)) {
-    ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1)");
-  }
+  RequireOptions(target, options);
   Conversion conversion;
   conversion.law = LawOf(contact, target.form, options);
   conversion.at_amplitude = CompareLoops(conversion.law, contact, options.amplitude);
@@ -178,57 +212,14 @@ Conversion Convert(const ModelLaw& contact, const TargetRow& target,
     conversion.within = {EdgeOf(is_within, options.amplitude, 1 / step),
                          EdgeOf(is_within, options.amplitude, step)};
   }
-  return conversion;
-}
-
-void Validate(const NormalContact& contact, const TargetRow& target) {
-  if (contact.normal_load) RequirePositive("--normal-load [N]", *contact.normal_load);
-  if (contact.contact_radius) RequirePositive("--contact-radius [m]", *contact.contact_radius);
-  if (!(contact.normal_load || contact.contact_radius) || target.form == Form::kSpring) return;
-  throw InputError("--normal-load and --contact-radius have no effect unless --to is lammps");
-}
-
-std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRow& target,
-                                    const NormalContact& contact) {
-  const std::map<std::string_view, double> values = ValuesOf(conversion, contact);
-  std::vector<Parameter> parameters;
+  const std::map<std::string_view, double> values = ValuesOf(conversion.law, options);
   for (const ParameterRow& row : target.parameters) {
-    const auto found = values.find(row.key);
-    if (found == values.end()) continue;
-    parameters.push_back(
-        {std::string(row.name), found->second, std::string(row.unit), std::string(row.meaning)});
+    if (values.contains(row.key)) conversion.parameters.push_back({row, values.at(row.key)});
   }
-  return parameters;
-}
-
-std::vector<std::string> InputLines(const Conversion& conversion, const TargetRow& target,
-                                    const NormalContact& contact, std::string_view remark) {
-  if (target.form == Form::kSpring && !contact.normal_load) {
-    throw InputError("--input-lines for LAMMPS need --normal-load: friction coefficient Tc/N");
+  if (target.form != Form::kSpring || options.normal_load) {
+    conversion.input_lines = LinesOf(conversion.law, target, values);
   }
-  fmt::dynamic_format_arg_store<fmt::format_context> store;
-  for (const auto& [key, value] : ValuesOf(conversion, contact)) {
-    store.push_back(fmt::arg(std::string(key).c_str(), value));
-  }
-  std::vector<std::string> lines;
-  // The laws here are options of simulate, which have no comments.
-  const bool has_comments = target.form != Form::kMasing && target.form != Form::kDahl;
-  if (!remark.empty() && has_comments) lines.push_back(fmt::format("# {}", remark));
-  for (const std::string_view line : target.lines) {
-    if (line.find("{k_per_a}") != std::string_view::npos && !contact.contact_radius) continue;
-    lines.push_back(fmt::vformat(line, store));
-  }
-  if (const auto* elements = std::get_if<IwanElements>(&conversion.law)) {
-    std::string tags;
-    for (std::size_t j = 0; j < elements->size(); ++j) {
-      lines.push_back(fmt::format("uniaxialMaterial ElasticPP {} {} {}", j + 1,
-                                  elements->stiffness[j],
-                                  elements->slip_force[j] / elements->stiffness[j]));
-      tags += fmt::format(" {}", j + 1);
-    }
-    lines.push_back(fmt::format("uniaxialMaterial Parallel {}{}", elements->size() + 1, tags));
-  }
-  return lines;
+  return conversion;
 }
 
 }  // namespace mindahl::convert

@@ -12,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -156,14 +157,11 @@ SteadyLoop LoopOf(const SteadyLaw& law, double amplitude) {
 
 namespace {
 
-/// Stiffness and slip force with which a law has a contact's peak force and energy at an amplitude.
-struct Scales {
-  double stiffness;
-  double slip_force;
-};
-
+/// Returns the stiffness and the slip force with which a law has a contact's peak force and energy
+/// at an amplitude.
 /// @param unit  the law with a stiffness and a slip force of 1
-Scales ScalesOf(const ModelLaw& contact, double amplitude, const SteadyLaw& unit) {
+std::pair<double, double> ScalesOf(const ModelLaw& contact, double amplitude,
+                                   const SteadyLaw& unit) {
   const SteadyLoop wanted = LoopOf(contact, amplitude);
   const double wanted_peak = wanted.force(2 * amplitude);
   const double fullness = wanted.energy / (4 * amplitude * wanted_peak);

@@ -121,55 +121,47 @@ TEST(Conversion, RefusesOptionsThatBreakARule) {
   EXPECT_THROW(To("iwan", kMindlin, {.elements = 0}), InvalidArgument);
   EXPECT_THROW(To("bouc-wen", kMindlin, {.beta = 0.0}), InvalidArgument);
   EXPECT_THROW(To("bouc-wen", kMindlin, {.beta = 1.5}), InvalidArgument);
-  EXPECT_THROW(Validate({.normal_load = -1.0}, Target("lammps")), InvalidArgument);
+  EXPECT_THROW(To("lammps", kMindlin, {.normal_load = -1.0}), InvalidArgument);
+  EXPECT_THROW(To("dahl", kMindlin, {.normal_load = 1.0}), InputError);
 }
 
 TEST(Parameters, OfMasingsLawAreItsOwn) {
-  const std::vector<Parameter> parameters = ParametersOf(To("masing", kMindlin), Target("masing"));
+  const std::vector<Parameter> parameters = To("masing", kMindlin).parameters;
   ASSERT_EQ(parameters.size(), 3U);
-  EXPECT_EQ(parameters[0].name, "sigma");
+  EXPECT_EQ(parameters[0].row.name, "sigma");
   EXPECT_EQ(parameters[0].value, 4e7);
   EXPECT_EQ(parameters[2].value, 40.0);
 }
 
 TEST(Parameters, HaveAFrictionCoefficientWhereTheLoadIsKnown) {
-  const Conversion conversion = To("lammps", kMindlin);
-  EXPECT_EQ(ParametersOf(conversion, Target("lammps")).size(), 2U);
+  EXPECT_EQ(To("lammps", kMindlin).parameters.size(), 2U);
   const std::vector<Parameter> parameters =
-      ParametersOf(conversion, Target("lammps"), {.normal_load = 100.0});
+      To("lammps", kMindlin, {.normal_load = 100.0}).parameters;
   ASSERT_EQ(parameters.size(), 3U);
-  EXPECT_EQ(parameters[2].name, "mu");
+  EXPECT_EQ(parameters[2].row.name, "mu");
   EXPECT_EQ(parameters[2].value, parameters[1].value / 100.0);
 }
 
 TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
-  const std::vector<Parameter> parameters =
-      ParametersOf(To("bouc-wen", kMindlin, {.beta = 0.2}), Target("bouc-wen"));
+  const std::vector<Parameter> parameters = To("bouc-wen", kMindlin, {.beta = 0.2}).parameters;
   ASSERT_EQ(parameters.size(), 6U);
-  EXPECT_EQ(parameters[3].name, "beta");
-  EXPECT_EQ(parameters[4].name, "gamma");
+  EXPECT_EQ(parameters[3].row.name, "beta");
+  EXPECT_EQ(parameters[4].row.name, "gamma");
   EXPECT_NEAR(parameters[4].value / parameters[3].value, 4.0, 1e-14 * 4);
 }
 
 TEST(InputLines, OfLammpsNeedANormalLoad) {
-  const Conversion conversion = To("lammps", kMindlin);
-  EXPECT_THROW(InputLines(conversion, Target("lammps")), InputError);
-  EXPECT_EQ(InputLines(conversion, Target("lammps"), {.normal_load = 100.0}).size(), 2U);
+  EXPECT_THAT(To("lammps", kMindlin).input_lines, IsEmpty());
+  EXPECT_THAT(To("lammps", kMindlin, {.normal_load = 100.0}).input_lines, SizeIs(2));
 }
 
-TEST(InputLines, BeginWithARemarkWhereTheTargetHasComments) {
+TEST(InputLines, HaveEveryValue) {
   for (const TargetRow& target : Targets()) {
-    const Conversion conversion = To(target.name, kMindlin);
-    const NormalContact contact = {.normal_load = 100.0, .contact_radius = 1e-3};
-    const std::vector<std::string> plain = InputLines(conversion, target, contact);
-    const std::vector<std::string> remarked = InputLines(conversion, target, contact, "off by 5 %");
-    if (target.form == Form::kMasing || target.form == Form::kDahl) {
-      EXPECT_EQ(remarked, plain) << target.name;  // options of simulate
-      continue;
-    }
-    ASSERT_EQ(remarked.size(), plain.size() + 1) << target.name;
-    EXPECT_EQ(remarked[0], "# off by 5 %");
-    for (const std::string& line : plain) EXPECT_THAT(line, ::testing::Not(HasSubstr("{")));
+    ConversionOptions options;
+    if (target.form == Form::kSpring) options = {.normal_load = 100.0, .contact_radius = 1e-3};
+    const std::vector<std::string> lines = To(target.name, kMindlin, options).input_lines;
+    EXPECT_THAT(lines, Not(IsEmpty())) << target.name;
+    for (const std::string& line : lines) EXPECT_THAT(line, Not(HasSubstr("{")));
   }
 }
 

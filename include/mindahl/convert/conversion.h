@@ -47,6 +47,8 @@ struct ConversionOptions {
   double tolerance = 0.01;   ///< relative error allowed in force and energy, in (0, 1)
   std::size_t elements = 8;  ///< number of elements of Iwan's model, >= 1
   double beta = 0.5;         ///< β of the Bouc–Wen law, in (0, 1]
+  std::optional<double> normal_load = {};     ///< of LAMMPS alone, N [N], > 0: friction is Tc/N
+  std::optional<double> contact_radius = {};  ///< likewise, a [m], > 0: Mindlin stiffness is kt·a
 };
 
 /// Amplitudes [m].
@@ -55,12 +57,21 @@ struct AmplitudeRange {
   double upper = 0.0;
 };
 
+/// A parameter of the other law with its value.
+struct Parameter {
+  ParameterRow row;
+  double value = 0.0;
+};
+
 struct Conversion {
   SteadyLaw law;
   LoopError at_amplitude;  ///< at X
   /// Amplitudes around X at which force and energy are within the tolerance, looked for from X/100
   /// to 100·X; empty where X itself is not.
   std::optional<AmplitudeRange> within = std::nullopt;
+  std::vector<Parameter> parameters = {};  ///< in the target's own names and units
+  /// Lines that the target reads; none of LAMMPS without a normal load.
+  std::vector<std::string> input_lines = {};
 };
 
 /// Computes the parameters with which another law reproduces the steady loop of a contact.
@@ -70,36 +81,10 @@ struct Conversion {
 /// exponent of Bouc–Wen that of the least difference of force. Jenkins elements are the tangents of
 /// the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
-/// @throws InvalidArgument for an invalid law or option
+/// @throws InvalidArgument for an invalid law or option, InputError for a normal load or a contact
+///   radius that the target does not use
 /// Cost: some 10 ms, of Bouc's and Wen's law some 0.5 s.
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options);
-
-struct Parameter {
-  std::string name;
-  double value;
-  std::string unit;
-  std::string meaning;
-};
-
-/// Holds the properties of a contact that programs need in addition to a law.
-struct NormalContact {
-  std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
-  std::optional<double> contact_radius = {};  ///< a [m], > 0: LAMMPS' Mindlin stiffness is kt·a
-};
-
-/// @throws InputError for another target than LAMMPS, InvalidArgument for values out of range
-void Validate(const NormalContact& contact, const TargetRow& target);
-
-/// Returns the parameters of a conversion, in the target's own names and units.
-std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRow& target,
-                                    const NormalContact& contact = {});
-
-/// Returns the lines that the target reads.
-/// @param remark  stands before them as a comment, where the target has comments
-/// @throws InputError for LAMMPS without a normal load
-std::vector<std::string> InputLines(const Conversion& conversion, const TargetRow& target,
-                                    const NormalContact& contact = {},
-                                    std::string_view remark = {});
 
 }  // namespace mindahl::convert
