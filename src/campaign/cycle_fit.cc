@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -87,16 +86,6 @@ void FillParameter(const FitResult& result, const std::string& name, CycleFit& f
   if (estimate->standard_error) fit[name + "_error"] = result.ErrorOf(*estimate);
 }
 
-/// Forces near the largest double overflow in squares and products: what is not finite then is not
-/// known, and a fit whose residuals overflow is none.
-void DropWhatOverflows(CycleFit& fit) {
-  const bool has_residuals = std::isfinite(fit["rms"].value_or(0.0));
-  for (std::optional<double>& number : fit.numbers) {
-    if (number && !std::isfinite(*number)) number.reset();
-  }
-  if (!has_residuals && !fit.HasFlag("not_converged")) fit.flags.emplace_back("not_converged");
-}
-
 }  // namespace
 
 std::span<const CycleFlag> CycleFlags() { return kFlags; }
@@ -105,12 +94,6 @@ CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
 
 CycleFit CycleFitter::Fit(const Cycle& cycle) {
-  CycleFit fit = FitAlone(cycle);
-  DropWhatOverflows(fit);
-  return fit;
-}
-
-CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   CycleFit fit;
   fit.number = cycle.number;
   fit.first_line = cycle.first_line;

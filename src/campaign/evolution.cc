@@ -26,46 +26,46 @@ constexpr int kDepth = 3;                // up to eight segments
 
 using Bins = std::span<const Course::Bin>;
 
-/// A weighted least-squares line through bins: y = level + slope (x − x₀).
+/// A least-squares line through the values in bins, which takes one more at a time (West 1979):
+///   y = level + slope (x − x₀)
 struct Line {
   double x0 = 0.0;
   double level = 0.0;
-  double slope = 0.0;
-  double weights = 0.0;
-  double spread = 0.0;   // Σw(x − x₀)²
-  double squares = 0.0;  // Σw(y − line)²
+  double count = 0.0;
+  double spread = 0.0;   // Σ(x − x₀)²
+  double product = 0.0;  // Σ(x − x₀)(y − level)
+  double square = 0.0;   // Σ(y − level)²
 
-  [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
-  /// Returns the variance of its value at a bin where a weight of one has the
-  /// variance one.
+  void Add(const Course::Bin& bin) {
+    count += bin.count;
+    const double x = bin.cycle - x0;
+    const double y = bin.value - level;
+    x0 += bin.count / count * x;
+    level += bin.count / count * y;
+    spread += bin.count * x * (bin.cycle - x0);
+    product += bin.count * x * (bin.value - level);
+    square += bin.count * y * (bin.value - level);
+  }
+
+  [[nodiscard]] double slope() const { return spread > 0 ? product / spread : 0.0; }
+  /// Returns Σ(y − line)².
+  [[nodiscard]] double squares() const { return square - slope() * product; }
+  [[nodiscard]] double At(double x) const { return level + slope() * (x - x0); }
+  /// Returns the variance of its value at a bin, over that of a value.
   [[nodiscard]] double VarianceAt(const Course::Bin& bin) const {
-    return 1 / weights + (slope == 0 ? 0.0 : (bin.cycle - x0) * (bin.cycle - x0) / spread);
+    return 1 / count + (slope() == 0 ? 0.0 : (bin.cycle - x0) * (bin.cycle - x0) / spread);
   }
 };
 
 Line LineThrough(Bins bins) {
   Line line;
-  for (const Course::Bin& bin : bins) line.weights += bin.weight;
-  for (const Course::Bin& bin : bins) {
-    line.x0 += bin.weight / line.weights * bin.cycle;
-    line.level += bin.weight / line.weights * bin.value;
-  }
-  double product = 0.0;
-  for (const Course::Bin& bin : bins) {
-    line.spread += bin.weight * (bin.cycle - line.x0) * (bin.cycle - line.x0);
-    product += bin.weight * (bin.cycle - line.x0) * (bin.value - line.level);
-  }
-  line.slope = line.spread > 0 ? product / line.spread : 0.0;
-  for (const Course::Bin& bin : bins) {
-    const double left = bin.value - line.At(bin.cycle);
-    line.squares += bin.weight * left * left;
-  }
+  for (const Course::Bin& bin : bins) line.Add(bin);
   return line;
 }
 
 /// The scatter of a time history, apart from what it follows.
 struct Noise {
-  double variance = 0.0;  // of a bin of weight one, as it counts in means over many
+  double variance = 0.0;  // of a value, as it counts in means over many
   double degrees = 0.0;   // of freedom of that
 };
 
@@ -86,13 +86,13 @@ Noise NoiseOf(Bins bins) {
     } else {
       blocks.push_back(bins[i]);
     }
-    exact = std::max(exact, bins[i].weight * std::pow(kExact * bins[i].value, 2));
+    exact = std::max(exact, bins[i].count * std::pow(kExact * bins[i].value, 2));
   }
   std::vector<double> squares;
   for (std::size_t k = 2; k < blocks.size(); ++k) {
     const double bend = blocks[k - 2].value - 2 * blocks[k - 1].value + blocks[k].value;
     squares.push_back(bend * bend /
-                      (1 / blocks[k - 2].weight + 4 / blocks[k - 1].weight + 1 / blocks[k].weight));
+                      (1 / blocks[k - 2].count + 4 / blocks[k - 1].count + 1 / blocks[k].count));
   }
   const double degrees = static_cast<double>(squares.size()) / 2;
   const double variance = boost::math::statistics::median(squares) / kMedianOfChiSquared;
@@ -116,19 +116,25 @@ struct Segment {
 
 /// Appends the segments of these bins.
 void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segments) {
-  const Line one = LineThrough(bins);
+  Line one;
+  std::vector<double> squares;  // of the lines through so many bins and through the others
+  for (const Course::Bin& bin : bins) {
+    squares.push_back(one.squares());
+    one.Add(bin);
+  }
+  Line others;
   std::size_t place = 0;
-  double least = one.squares;
-  for (std::size_t k = kLeastBins; depth > 0 && k + kLeastBins <= bins.size(); ++k) {
-    const double squares =
-        LineThrough(bins.first(k)).squares + LineThrough(bins.subspan(k)).squares;
-    if (squares < least) {
-      least = squares;
+  double least = one.squares();
+  for (std::size_t k = bins.size() - 1; depth > 0 && k >= kLeastBins; --k) {
+    others.Add(bins[k]);
+    squares[k] += others.squares();
+    if (squares[k] < least && k + kLeastBins <= bins.size()) {
+      least = squares[k];
       place = k;
     }
   }
   constexpr double kMore = 3;  // a level, a slope and a place
-  const double f = (one.squares - least) / kMore / noise.variance;
+  const double f = (one.squares() - least) / kMore / noise.variance;
   // Squares of numbers near the largest double overflow.
   const double p_value =
       place == 0 || !std::isfinite(f)
@@ -165,7 +171,7 @@ std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
   std::optional<std::size_t> settled;
   for (const Segment& each : segments) {
     for (const Course::Bin& bin : each.bins) {
-      const bool is_near = std::abs(each.At(bin) - end) <= kSettled * change;
+      const bool is_near = std::abs(each.line.At(bin.cycle) - end) <= kSettled * change;
       settled = is_near ? settled.value_or(bin.first_cycle) : std::optional<std::size_t>();
     }
   }
@@ -181,8 +187,8 @@ std::optional<Change> StepBetween(const Segment& before, const Segment& after, c
   const std::size_t cycle = before.bins.back().last_cycle + 1;
   Change step = {cycle, cycle, before.last(), after.first()};
   const double jump = std::abs(step.to - step.from);
-  const double steepest = std::max(std::abs(before.line.slope), std::abs(after.line.slope));
-  const double width = static_cast<double>(kLeastBins * before.bins.front().count);
+  const double steepest = std::max(std::abs(before.line.slope()), std::abs(after.line.slope()));
+  const double width = static_cast<double>(kLeastBins) * before.bins.front().count;
   const double error = std::sqrt(noise.variance * (before.line.VarianceAt(before.bins.back()) +
                                                    after.line.VarianceAt(after.bins.front())));
   step.p_value =
@@ -207,18 +213,18 @@ std::optional<CourseDescription> Describe(const Course& course) {
   for (Segment& segment : segments) {
     Line& line = segment.line;
     const double p_value =
-        PValueOfT(line.slope / std::sqrt(noise.variance / line.spread), noise.degrees);
+        PValueOfT(line.slope() / std::sqrt(noise.variance / line.spread), noise.degrees);
     const bool is_large =
         std::abs(segment.last() - segment.first()) >= kSmallestTrend * std::abs(line.level);
-    if (!(p_value < kChance && is_large)) line.slope = 0;
+    if (!(p_value < kChance && is_large)) line.product = 0;
     std::optional<Change> step;
     if (before != nullptr) step = StepBetween(*before, segment, noise, bins.size());
     if (step) changes.push_back(*step);
-    if (before != nullptr && !step && before->line.slope * line.slope > 0) {
+    if (before != nullptr && !step && before->line.slope() * line.slope() > 0) {
       changes.back().last_cycle = segment.bins.back().last_cycle;
       changes.back().to = segment.last();
       changes.back().p_value = std::min(changes.back().p_value, p_value);
-    } else if (line.slope != 0) {
+    } else if (line.slope() != 0) {
       changes.push_back({segment.bins.front().first_cycle, segment.bins.back().last_cycle,
                          segment.first(), segment.last(), p_value});
     }
@@ -237,14 +243,12 @@ void Course::Bin::Merge(const Bin& next) {
   least = std::min(least, next.least);
   greatest = std::max(greatest, next.greatest);
   count += next.count;
-  cycle += (next.cycle - cycle) * static_cast<double>(next.count) / static_cast<double>(count);
-  weight += next.weight;
-  const double share = next.weight / weight;
-  value = value * (1 - share) + next.value * share;
+  cycle += (next.cycle - cycle) * next.count / count;
+  value += (next.value - value) * next.count / count;
 }
 
-void Course::Add(std::size_t cycle, double value, double weight) {
-  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, weight, value, value, 1};
+void Course::Add(std::size_t cycle, double value) {
+  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, value, value, 1};
   if (bins_.empty()) first_ = value;
   last_ = value;
   if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
@@ -262,22 +266,15 @@ void Course::Add(std::size_t cycle, double value, double weight) {
 namespace {
 
 constexpr std::array kQuantities = {
-    TrackedQuantity{"friction_coefficient", "μ", "", "slip_force_error"},
-    TrackedQuantity{"slip_force", "Tc", "slip_force_open", "slip_force_error"},
-    TrackedQuantity{"half_gap", "half gap", "", "rms"},
-    TrackedQuantity{"sigma", "σ", "sigma_open", "sigma_error"},
-    TrackedQuantity{"contact_radius", "a", "sigma_open", "sigma_error"},
-    TrackedQuantity{"alpha", "", "alpha_open", "alpha_error"},
-    TrackedQuantity{"energy", "", "", "rms"},
-    TrackedQuantity{"energy_ratio", "", "", "rms"},
+    TrackedQuantity{"friction_coefficient", "μ", ""},
+    TrackedQuantity{"slip_force", "Tc", "slip_force_open"},
+    TrackedQuantity{"half_gap", "half gap", ""},
+    TrackedQuantity{"sigma", "σ", "sigma_open"},
+    TrackedQuantity{"contact_radius", "a", "sigma_open"},
+    TrackedQuantity{"alpha", "", "alpha_open"},
+    TrackedQuantity{"energy", "", ""},
+    TrackedQuantity{"energy_ratio", "", ""},
 };
-
-/// Returns one over the square of an error, within what sums of a million
-/// million neither overflow nor lose.
-double WeightOf(double error) {
-  constexpr double kLargest = 1e145;
-  return std::clamp(1 / error / error, 1 / kLargest, kLargest);
-}
 
 /// Returns "+60 %"; nothing where the sign changes or it grows more than
 /// tenfold.
@@ -371,15 +368,12 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
     ++evolution.fits;
-    if (!value || fit.HasFlag(quantity.open_flag) || fit.HasFlag("not_converged") ||
-        fit.HasFlag("rows_missing")) {
+    if (!value || !std::isfinite(*value) || fit.HasFlag(quantity.open_flag) ||
+        fit.HasFlag("not_converged") || fit.HasFlag("rows_missing")) {
       continue;
     }
     ++evolution.known;
-    // A value without an error is exact, held or without noise: then all have
-    // one weight.
-    const std::optional<double>& error = fit[quantity.error];
-    evolution.course.Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
+    evolution.course.Add(fit.number, *value);
   }
 }
 

@@ -98,13 +98,10 @@ class CycleFitter {
   explicit CycleFitter(identification::FitOptions options,
                        std::optional<double> compliance = std::nullopt);
 
-  /// A cycle that cannot be fitted is one with the flag not_converged. Every number is finite: one
-  /// that overflows is empty.
+  /// A cycle that cannot be fitted is one with the flag not_converged.
   CycleFit Fit(const Cycle& cycle);
 
  private:
-  CycleFit FitAlone(const Cycle& cycle);
-
   identification::Fitter fitter_;
   std::optional<double> compliance_;
 };

@@ -13,18 +13,17 @@
 namespace mindahl::campaign {
 
 /// A quantity over the cycles of a test, in memory that the number of cycles does not change:
-/// weighted means over bins of equally many values, at most kMostBins of them.
+/// means over bins of equally many values, at most kMostBins of them.
 class Course {
  public:
   struct Bin {
     std::size_t first_cycle = 0;
     std::size_t last_cycle = 0;
-    double cycle = 0.0;  ///< mean number
-    double value = 0.0;  ///< mean, weighted
-    double weight = 0.0;
+    double cycle = 0.0;     ///< mean number
+    double value = 0.0;     ///< mean
     double least = 0.0;     ///< smallest of its values
     double greatest = 0.0;  ///< likewise
-    std::size_t count = 0;
+    double count = 0.0;
 
     /// Takes in the bin that comes after it.
     void Merge(const Bin& next);
@@ -34,8 +33,7 @@ class Course {
 
   /// @param cycle   its number, larger than the last
   /// @param value   finite
-  /// @param weight  > 0: one over its variance, in any unit
-  void Add(std::size_t cycle, double value, double weight = 1.0);
+  void Add(std::size_t cycle, double value);
 
   [[nodiscard]] std::span<const Bin> bins() const { return bins_; }
   // The first and the last value that was added; of at least one.
@@ -44,7 +42,7 @@ class Course {
 
  private:
   std::vector<Bin> bins_;
-  std::size_t width_ = 1;  // values to a bin
+  double width_ = 1;  // values to a bin
   double first_ = 0.0;
   double last_ = 0.0;
 };
@@ -64,7 +62,7 @@ struct Change {
 };
 
 struct CourseDescription {
-  /// Weighted means of the first three bins and of the last three; without a
+  /// Means of the first three bins and of the last three; without a
   /// change that of all.
   double from = 0.0;
   double to = 0.0;
@@ -89,7 +87,6 @@ struct TrackedQuantity {
   std::string_view name;       ///< column of the table of cycles
   std::string_view symbol;     ///< "μ"; "" where the headline does not name it
   std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
-  std::string_view error;      ///< column in proportion to its standard error
 };
 
 /// Returns all of them, in the order of the report.
