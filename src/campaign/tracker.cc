@@ -71,7 +71,9 @@ void Tracker::Begin() {
   // the function is therefore copied.
   const auto cycles = std::make_shared<const std::vector<Cycle>>(std::exchange(batch_, {}));
   const auto fit = [this, cycles] { return FitBatch(options_, *cycles); };
-  begun_.push_back(std::async(fit));
+  const auto policy =
+      options_.threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
+  begun_.push_back(std::async(policy, fit));
   batch_.reserve(kBatch);
 }
 

@@ -21,7 +21,7 @@ struct TrackOptions {
   identification::FitOptions fit{};
   std::optional<double> compliance = std::nullopt;  ///< G* [1/Pa], for the contact radius
   std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
-  std::size_t threads = 1;  ///< worker threads that fit, in addition to the calling one, >= 1
+  std::size_t threads = 1;  ///< worker threads that fit, >= 1; where it is 1 the calling one fits
   std::size_t skipped = 0;  ///< fits at the beginning that are not made: a multiple of kBatch
   std::uint64_t seed = 0;   ///< initial value of the checksums, as CycleSplitter takes it
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <ranges>
 
 #include "core/probability.h"
 
@@ -64,8 +63,12 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   constexpr std::size_t kParts = 20;
   const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
-  std::array<std::array<std::vector<double>, kParts>, 2> means;  // of strokes
-  std::vector<double> mean_squares;                              // likewise
+  struct Parts {
+    std::array<double, kParts> sums{};
+    std::array<double, kParts> counts{};
+  };
+  std::array<std::vector<Parts>, 2> strokes;
+  std::vector<double> mean_squares;  // of strokes
   double squares = 0.0;
   double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
@@ -73,21 +76,18 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     const double from = excitation[stroke.begin];
     const double way = excitation[stroke.end] - from;
     double own_squares = 0.0;
-    std::array<double, kParts> sums{};
-    std::array<double, kParts> counts{};
+    Parts of_stroke;
     for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
       if (record.counts[i] == 0) continue;
       const double share = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
       const auto part = std::min(static_cast<std::size_t>(share * kParts), kParts - 1);
-      sums[part] += residual[i];
-      ++counts[part];
+      of_stroke.sums[part] += residual[i];
+      ++of_stroke.counts[part];
       own_squares += residual[i] * residual[i];
     }
-    const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
+    const double count = std::accumulate(of_stroke.counts.begin(), of_stroke.counts.end(), 0.0);
     if (count < 2) continue;  // left out, but for a reversal that it shares
-    for (std::size_t part = 0; part < kParts; ++part) {
-      if (counts[part] > 0) means[side][part].push_back(sums[part] / counts[part]);
-    }
+    strokes[side].push_back(of_stroke);
     ++structure.strokes[side];
     mean_squares.push_back(own_squares / count);
     squares += own_squares;
@@ -97,8 +97,13 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   double within = 0.0;   // Σ (m − m̄)², of strokes within parts
   double parts = 0.0;
   double degrees_within = 0.0;
-  double systematic = 0.0;  // Σ (m̄² − s²/n)
-  for (const std::vector<double>& of_part : std::views::join(means)) {
+  double systematic = 0.0;      // Σ (m̄² − s²/n)
+  std::vector<double> of_part;  // means of strokes
+  for (std::size_t k = 0; k < 2 * kParts; ++k) {
+    of_part.clear();
+    for (const auto& [sums, counts] : strokes[k / kParts]) {
+      if (const double n = counts[k % kParts]; n > 0) of_part.push_back(sums[k % kParts] / n);
+    }
     const auto count = static_cast<double>(of_part.size());
     if (count < 2) continue;
     const double mean = std::accumulate(of_part.begin(), of_part.end(), 0.0) / count;

@@ -25,22 +25,25 @@ using Autocovariances = std::array<double, kHighestOrder + 1>;
 Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
                                         std::span<const double> residual, std::size_t order) {
   Autocovariances covariances{};
-  for (std::size_t lag = 0; lag <= order; ++lag) {
-    double sum = 0.0;
-    std::size_t pairs = 0;
-    std::size_t counting = 0;
-    std::span<const double> rest = residual;
-    for (const ScaledRecord& record : records) {
-      for (std::size_t i = lag; i < record.size(); ++i) {
-        ++pairs;
+  std::array<std::size_t, kHighestOrder + 1> pairs{};
+  std::array<std::size_t, kHighestOrder + 1> counting{};
+  std::span<const double> rest = residual;
+  for (const ScaledRecord& record : records) {
+    // Lags within, so that their sums do not wait for each other.
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      for (std::size_t lag = 0; lag <= std::min(order, i); ++lag) {
+        ++pairs[lag];
         if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
-        sum += rest[i] * rest[i - lag];
-        ++counting;
+        covariances[lag] += rest[i] * rest[i - lag];
+        ++counting[lag];
       }
-      rest = rest.subspan(record.size());
     }
-    const double mean = counting > 0 ? sum / static_cast<double>(counting) : 0.0;
-    covariances[lag] = mean * static_cast<double>(pairs) /
+    rest = rest.subspan(record.size());
+  }
+  for (std::size_t lag = 0; lag <= order; ++lag) {
+    const double mean =
+        covariances[lag] / static_cast<double>(std::max<std::size_t>(counting[lag], 1));
+    covariances[lag] = mean * static_cast<double>(pairs[lag]) /
                        static_cast<double>(std::max<std::size_t>(residual.size(), 1));
   }
   return covariances;
