@@ -107,14 +107,13 @@ MINDAHL_INLINE Exponential Exponentiate(double x) {
 struct RunConstants {
   double origin;
   double rate;
-  double reach;
   double beta;
   double per_beta;  // 0 for β = 0, where it is not used
 };
 
 MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch& branch, double shape_exponent) {
   const double beta = 1 - shape_exponent;
-  return {branch.origin, branch.rate, branch.reach, beta, beta == 0 ? 0.0 : 1 / beta};
+  return {branch.origin, branch.rate, beta, beta == 0 ? 0.0 : 1 / beta};
 }
 
 struct Sample {
@@ -131,9 +130,8 @@ struct Sample {
 MINDAHL_INLINE Sample SampleAt(const RunConstants& run, double displacement) {
   Sample sample{};
   const double e = displacement - run.origin;
-  const double length = std::abs(e);
   sample.sign = std::copysign(1.0, e);
-  sample.y = run.rate * (length < run.reach ? length : run.reach);
+  sample.y = run.rate * std::abs(e);
   const double all = run.beta * sample.y;
   sample.slips = !(all < 1);
   const double w = sample.slips ? 0.0 : all;

@@ -13,13 +13,17 @@ void Validate(const BranchLaw& law) {
   RequirePositive("tangential stiffness [N/m]", law.tangential_stiffness);
   RequirePositive("slip force [N]", law.slip_force);
   RequireNonNegative("shape exponent [-]", law.shape_exponent);
-  if (law.shape_exponent > backbone::kLargestShapeExponent) {
-    ThrowInvalid("shape exponent [-]", law.shape_exponent, "must be <= 1e100");
+  // On a path of at most 1e100 m no σx/Tc, nor one of a branch that is 2^α times as steep,
+  // overflows.
+  constexpr double kLargestShapeExponent = 100.0;
+  constexpr double kLargestRate = 1e150;
+  if (law.shape_exponent > kLargestShapeExponent) {
+    ThrowInvalid("shape exponent [-]", law.shape_exponent, "must be <= 100");
   }
   const double inverse_elastic_limit = law.tangential_stiffness / law.slip_force;
-  if (!std::isnormal(inverse_elastic_limit)) {
+  if (!(inverse_elastic_limit >= 1 / kLargestRate && inverse_elastic_limit <= kLargestRate)) {
     ThrowInvalid("tangential stiffness over slip force [1/m]", inverse_elastic_limit,
-                 "must be a normal double, about 2e-308 to 2e308");
+                 "must lie within 1e-150 and 1e150");
   }
 }
 

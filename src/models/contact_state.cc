@@ -1,7 +1,5 @@
 #include "mindahl/models/contact_state.h"
 
-#include <fmt/format.h>
-
 #include <cstdint>
 
 #include "mindahl/core/error.h"
@@ -72,17 +70,6 @@ ContactState::Entry ContactState::Enter(double displacement) const {
       end = std::min(end, direction * ClosingDisplacement(entry.open, origin_of));
   }
   const ScaledBranch& branch = course.branch;
-  // For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
-  if (law_.shape_exponent > 1) {
-    if (std::abs(displacement - branch.origin) > branch.reach) {
-      ThrowInvalid("displacement [m]", displacement,
-                   fmt::format("must be within {:.3g} elastic limits of its branch, {:.3g} m, for "
-                               "shape exponents > 1",
-                               backbone::kLargestDisplacement, branch.reach));
-    }
-    const double farthest = std::min(branch.reach, 2 * kLargestPathDisplacement);
-    end = std::min(end, direction * branch.origin + farthest);
-  }
   course.direction = direction;
   course.start = direction * branch.origin;
   course.end = end;

@@ -31,9 +31,9 @@ void RequireExcitation(const ExcitationOptions& options) {
     ThrowInvalid("samples per cycle [-]", static_cast<double>(options.samples_per_cycle),
                  "must be >= 4 and <= 1e9");
   }
-  constexpr double kLargestAmplitude = 1e307;  // [m], as of a loading path
+  constexpr double kLargestAmplitude = 1e100;  // [m], as of a loading path
   if (options.amplitude > kLargestAmplitude) {
-    ThrowInvalid("amplitude [m]", options.amplitude, "must be <= 1e307");
+    ThrowInvalid("amplitude [m]", options.amplitude, "must be <= 1e100");
   }
   constexpr double kMostSamples = 1e9;
   if (options.cycles > kMostSamples) {

@@ -78,7 +78,7 @@ struct DahlLoop {
 /// grows exponentially for α > 1, and bisection where it leaves the bracket.
 double SolveAmplitude(const DahlLoop& loop, double y, double highest) {
   constexpr double kTolerance = 2 * std::numeric_limits<double>::epsilon();
-  constexpr int kIterations = 500;  // halvings from 20 to 1e-100, where α = 1e100 turns
+  constexpr int kIterations = 500;  // halvings from 20 to kLinear
   double lowest = 0.0;
   double theta = std::min(y, highest / 2);
   for (int i = 0; i < kIterations; ++i) {

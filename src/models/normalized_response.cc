@@ -73,7 +73,6 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   const double limit = path.limit();
   const SprungShape shape{law.shape_exponent, law.spring_travel};
   ScaleBranches(scaling, path, shape, branches_);
-  RequireReach(branch_law, branches_, displacement);
   Differentiation(scaling, shape).Differentiate(path, branches_, gradients_);
   const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
   if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);

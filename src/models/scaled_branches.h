@@ -88,7 +88,7 @@ class BranchScaling {
     double per_log_spring_travel = 0.0;  // ∂t*/∂ln c
   };
   [[nodiscard]] PeakInSeries Peak(double amplitude) const {
-    const double y = ContactAmplitude(rate_ * std::min(amplitude, backbone::Reach(rate_)));
+    const double y = ContactAmplitude(rate_ * amplitude);
     const SteadyPeak contact = model_.steady_peak(y, shape_exponent_);
     if (series_compliance_ == 0) return {contact};
     const double yielding =
@@ -106,9 +106,8 @@ class BranchScaling {
   [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
                                    double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force);
-    const double rate = RateOf(scale) / limit;
-    return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate,
-            backbone::Reach(rate)};
+    return {branch.origin, origin_force, scale.span * scale.remaining * limit,
+            RateOf(scale) / limit};
   }
 
   /// Force over Tc at the branch's origin, `force_of_parent` giving that of the parent there.
@@ -130,16 +129,12 @@ class BranchScaling {
   }
 
  private:
-  /// Returns k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
+  /// Returns k = (σ/Tc)·v^{α−1}/span.
   [[nodiscard]] double RateOf(const BranchScale& scale) const {
-    constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
     if (scale.remaining <= 0) return 0.0;
     const double virgin_rate = rate_ / scale.span;
     if (scale.remaining == 1.0) return virgin_rate;
-    const double exponent = shape_exponent_ - 1;
-    const bool too_steep =
-        std::log(virgin_rate) + exponent * std::log(scale.remaining) >= std::log(kSteepest);
-    return too_steep ? kSteepest : virgin_rate * std::pow(scale.remaining, exponent);
+    return virgin_rate * std::pow(scale.remaining, shape_exponent_ - 1);
   }
 
   const FrictionModel& model_;
@@ -175,12 +170,6 @@ inline void RequireSizes(const LoadingPath& path, std::span<const double> displa
                   path.runs.empty() ? 0 : path.runs.back().end);
 }
 
-/// Refuses displacements beyond the reach of a branch where α > 1: the force still grows there; for
-/// α <= 1 it is Tc.
-/// @throws InvalidArgument
-void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
-                  std::span<const double> displacement);
-
 /// Computes the forces of one run; the loop has no branch or call, and vectorises where φ does.
 /// @param limit  the largest |t|
 template <typename Shape>
@@ -188,7 +177,7 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
                  std::span<const double> displacement, std::span<double> force) {
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     const double e = displacement[i] - branch.origin;
-    const double phi = shape.Force(branch.rate * std::min(std::abs(e), branch.reach));
+    const double phi = shape.Force(branch.Normalize(e));
     const double t = branch.force + std::copysign(branch.height * phi, e);
     force[i] = slip_force * std::clamp(t, -limit, limit);
   }
@@ -202,7 +191,6 @@ void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double sprin
                   const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
                   std::span<double> force, ScaledBranches& branches) {
   ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
-  RequireReach(law, branches, displacement);
   const double limit = path.limit();
   for (const BranchRun& run : path.runs) {
     const std::size_t count = run.end - run.begin;
@@ -260,11 +248,9 @@ inline double SpringTravel(const BranchLaw& law, const SeriesSpring& rig) {
   Validate(rig);
   // Compared before it is divided by, for no quotient to overflow.
   constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance;
-  constexpr double kLongest = 1e300;  // [m]
-  if (rig.stiffness < kSoftest * law.tangential_stiffness ||
-      rig.stiffness < law.slip_force / kLongest) {
+  if (rig.stiffness < kSoftest * law.tangential_stiffness) {
     ThrowInvalid("series stiffness [N/m]", rig.stiffness,
-                 "must be >= 1e-100 of the tangential stiffness and let the rig travel <= 1e300 m");
+                 "must be >= 1e-100 of the tangential stiffness");
   }
   return law.slip_force / rig.stiffness;
 }

@@ -32,7 +32,7 @@ void Validate(const LoadDependentLaw& law) {
   const double slip_displacement = GrossSlipDisplacement(reference);
   if (!(slip_displacement <= kLargestPathDisplacement)) {
     ThrowInvalid("gross-slip displacement [m] at the reference load", slip_displacement,
-                 "must be <= 1e307 m");
+                 "must be <= 1e100 m");
   }
 }
 
@@ -83,7 +83,7 @@ LoadRim<double> LoadedContactState::RimUnder(double normal_load) const {
                             law_.friction_coefficient * normal_load};
   if (!(rim.slip_displacement <= kLargestPathDisplacement && std::isfinite(rim.slip_force))) {
     ThrowInvalid(kQuantity, normal_load,
-                 "must keep the slip force finite and its displacement <= 1e307 m");
+                 "must keep the slip force finite and its displacement <= 1e100 m");
   }
   return rim;
 }

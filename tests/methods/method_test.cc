@@ -320,7 +320,8 @@ double VirginError(const BranchLaw& law, const IwanElements& elements) {
 }
 
 TEST(Iwan, StiffnessesSumToSigmaAndSlipForcesToTc) {
-  for (const double alpha : {0.0, 1e-300, 1e-8, 0.1, 1.0 / 3, 0.999, 1.0, 1.001, 2.0, 50.0, 1e6}) {
+  for (const double alpha :
+       {0.0, 1e-300, 1e-8, 0.1, 1.0 / 3, 0.999, 1.0, 1.001, 2.0, 50.0, 100.0}) {
     const BranchLaw law{4.8e8, alpha, 0.3};
     for (const std::size_t n : {1U, 2U, 7U, 100U, 2000U}) {
       const IwanElements elements = MakeIwanElements(law, n);

@@ -33,10 +33,9 @@ std::string RaisedBy(Call call) {
 template <typename Visit>
 void ForEveryPoint(Visit visit) {
   accuracy::ForEveryPoint(visit);
-  for (const double alpha : {0.0, 1e-300, 1.0 / 3.0, 1.0, 2.0, 100.0, 1e100}) {
-    for (const double x : {0.0, 1e-300, 1e-18, 1.0, 1.5, 2.0, 1e12, 1e300}) {
-      // For α > 1 the force still grows beyond 1e200 elastic limits: refused (edges_test.cc).
-      if (alpha <= 1 || x <= 1e200) visit({1.0, alpha, 1.0}, x);
+  for (const double alpha : {0.0, 1e-300, 1.0 / 3.0, 1.0, 2.0, 100.0}) {
+    for (const double x : {0.0, 1e-300, 1e-18, 1.0, 1.5, 2.0, 1e12, 4e99}) {
+      visit({1.0, alpha, 1.0}, x);
     }
   }
 }

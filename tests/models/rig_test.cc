@@ -143,7 +143,7 @@ TEST(Rig, IsRefusedWhereItMeansNothing) {
         << stiffness;
   }
   // Dahl's law is 2^α steeper from slip to slip.
-  EXPECT_THROW(Respond(Model("dahl"), {1.0, 400.0, 1.0}, {{1e75, 9e74}}, {}, {1e-70}),
+  EXPECT_THROW(Respond(Model("dahl"), {1.0, 100.0, 1.0}, {{1e85, 9e84}}, {}, {1e-80}),
                InvalidArgument);
 }
 

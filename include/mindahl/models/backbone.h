@@ -16,29 +16,15 @@ namespace mindahl::models::backbone {
 ///
 /// y = σx/Tc >= 0 is the displacement from the branch's origin over the elastic limit Tc/σ and φ
 /// the force over Tc. With β = 1 − α, w = β·y, z = 1 − w: u = z^{1/β} and φ' = u^α = u/z. Inline
-/// and free of checks: they are the inside of every kernel. Callers validate (branch_law.h), and
-/// keep y to kLargestDisplacement. Nothing here raises the invalid, overflow or division-by-zero
-/// flag of floating-point arithmetic.
+/// and free of checks: they are the inside of every kernel. Callers validate (branch_law.h,
+/// loading_path.h), so that neither y nor (1−α)y exceeds the largest double. Nothing here raises
+/// the invalid, overflow or division-by-zero flag of floating-point arithmetic.
 ///
 /// Errors, in ε = numeric_limits<Real>::epsilon(): φ relative 4 ε; u, φ' and the derivatives 4 ε of
 /// 1 (docs/accuracy.md).
 
-/// Largest α accepted: beyond it (1−α)·y could overflow.
-inline constexpr double kLargestShapeExponent = 1e100;
-
-/// Largest y: 1.8e200 in double. For α <= 1 the force is Tc there.
-inline constexpr double kLargestDisplacement =
-    std::numeric_limits<double>::max() / (kLargestShapeExponent * 1e8);
-
-/// Largest κ of a spring in series: Y − κ is still beyond slip at kLargestDisplacement.
-inline constexpr double kLargestSeriesCompliance = kLargestShapeExponent;
-
-/// Returns the largest |x| that y = rate·|x| may be formed from.
-[[nodiscard]] inline double Reach(double rate) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  constexpr double kUnlimited = kLargestDisplacement / kLargest;
-  return rate > kUnlimited ? kLargestDisplacement / rate : kLargest;
-}
+/// Largest κ of a spring in series: Y − κ is still beyond slip at the largest Y.
+inline constexpr double kLargestSeriesCompliance = 1e100;
 
 /// A displacement as the branch law uses it.
 template <typename Real>
@@ -222,7 +208,7 @@ struct SeriesDerivatives {
 /// either part start an iteration of third order, whose steps take the sum of the two decays for
 /// one decay: exact for κ → 0, for κ → ∞ and for α = 0.
 ///
-/// For 0 <= κ <= kLargestSeriesCompliance and 0 <= Y <= kLargestDisplacement; Φ has a relative
+/// For 0 <= κ <= kLargestSeriesCompliance and Y >= 0; Φ has a relative
 /// error below 4 ε. At most 3 iterations, found over 3e7 points; each is two or three
 /// transcendentals. Without a spring, κ = 0, and for α = 0 there is none.
 class InSeries {

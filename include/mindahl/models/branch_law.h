@@ -10,8 +10,8 @@ namespace mindahl::models {
 /// α = 1/3 Mindlin's contact, α = 1 Dahl's exponential.
 struct BranchLaw {
   double tangential_stiffness = 0.0;  ///< σ [N/m], finite, > 0
-  double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0, <= 1e100
-  double slip_force = 0.0;            ///< Tc [N], finite, > 0; σ/Tc must be a normal number
+  double shape_exponent = 1.0 / 3.0;  ///< α [–], >= 0, <= 100
+  double slip_force = 0.0;            ///< Tc [N], finite, > 0; σ/Tc within 1e-150 … 1e150 1/m
 };
 
 /// @throws InvalidArgument naming the parameter, its value and the rule

@@ -16,7 +16,7 @@
 namespace mindahl::models {
 
 struct ContactStateOptions {
-  double unloaded_displacement = 0.0;  ///< δ₀ [m], within ±1e307: T = 0 there
+  double unloaded_displacement = 0.0;  ///< δ₀ [m], within ±1e100: T = 0 there
   SeriesSpring rig = {};               ///< in series; δ is then that of spring and contact
 };
 
@@ -43,14 +43,13 @@ class ContactState {
                const ContactStateOptions& options = {});
 
   /// Moves on to δ and returns the force there.
-  /// @param displacement  δ [m], within ±1e307; the present one is no step
+  /// @param displacement  δ [m], within ±1e100; the present one is no step
   /// @returns T [N]; |T| <= Tc
   /// @throws InvalidArgument, the state being left as it was, for a displacement that is NaN or out
-  ///   of range, for α > 1 beyond 1.8e200 elastic limits of a branch, and for a branch 1e100 times
-  ///   stiffer than the spring
+  ///   of range, and for a branch 1e100 times stiffer than the spring
   /// Error as of EvaluateForce. Cost: one branch law, in all 1.1 times a sample of EvaluateForce, 2
   /// times where that is vectorised (bench/contact_state_bench.cc); at a reversal a branch is
-  /// opened too. Memory: 40 bytes an extreme that is remembered, none for Dahl's own law; it grows
+  /// opened too. Memory: 32 bytes an extreme that is remembered, none for Dahl's own law; it grows
   /// with the nesting alone, and nothing else is allocated.
   double Move(double displacement) {
     if (!course_.HoldsTo(displacement)) Turn(displacement);
@@ -114,7 +113,7 @@ class ContactState {
     }
     /// Returns y.
     [[nodiscard]] double Reduced(double displacement) const {
-      return branch.rate * std::min(direction * displacement - start, branch.reach);
+      return branch.rate * (direction * displacement - start);
     }
     [[nodiscard]] double ForceOverSlip(const Shape& shape, double displacement) const {
       return branch.force + rise * Share(shape, Reduced(displacement));

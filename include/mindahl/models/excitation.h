@@ -18,7 +18,7 @@ std::optional<Waveform> FindWaveform(std::string_view name);
 
 struct ExcitationOptions {
   Waveform waveform = Waveform::kSine;
-  double amplitude = 0.0;  ///< [m], > 0, <= 1e307; the largest, of a growing sine at its end
+  double amplitude = 0.0;  ///< [m], > 0, <= 1e100; the largest, of a growing sine at its end
   double cycles = 1.0;     ///< finite, > 0, multiples of 1/samples_per_cycle
   std::size_t samples_per_cycle = 200;  ///< 4 to 1e9; a multiple of 4 puts samples on the extremes
   double frequency = 1.0;               ///< [Hz], finite, > 0

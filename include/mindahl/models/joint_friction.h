@@ -42,7 +42,7 @@ inline double JointForceSlope(double state, double load_ratio, double asymmetry)
 
 /// Computes the force [N] at each sample: exact, no time step; z by the closed form of each branch.
 /// The joint is at z = 0 at displacement 0 before the first sample.
-/// @param displacement  δ [m] or [rad], within ±1e307
+/// @param displacement  δ [m] or [rad], within ±1e100
 /// @param load          N [N] or [N m], finite, of either sign; same size
 /// @param force         T, written; same size; |T| <= Tc(1 + |A|)·|N|/N̄
 /// @throws InvalidArgument for an invalid law, sizes that differ and values out of range

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -45,14 +44,13 @@ struct ScaledBranch {
   double force = 0.0;   ///< t₀, over Tc
   double height = 1.0;  ///< span·v
   double rate = 0.0;    ///< k [1/m]
-  double reach = 0.0;   ///< [m], largest |e| that rate multiplies without overflow
 
   /// Returns y = rate·|e|.
-  [[nodiscard]] double Normalize(double e) const { return rate * std::min(std::abs(e), reach); }
+  [[nodiscard]] double Normalize(double e) const { return rate * std::abs(e); }
 };
 
-/// Largest |displacement| [m] of a path: differences and mirror images of such are still doubles.
-inline constexpr double kLargestPathDisplacement = 1e307;
+/// Largest |displacement| [m] of a path.
+inline constexpr double kLargestPathDisplacement = 1e100;
 
 /// Successive samples on one branch: [begin, end).
 struct BranchRun {
@@ -115,7 +113,7 @@ struct InitialContact {
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
 ///                      step back within the gate
-/// @throws InvalidArgument when a displacement is not finite or beyond ±1e307 m, when the record is
+/// @throws InvalidArgument when a displacement is not finite or beyond ±1e100 m, when the record is
 ///   empty or has more than 2147483640 samples, for an asymmetry beyond (−1, 1) or of a law without
 ///   memory
 /// Cost: linear in the samples, however deep the nesting; 36 bytes a reversal, and 4 more an

@@ -31,15 +31,14 @@ void Validate(const SeriesSpring& rig);
 /// @param displacement  [m]
 /// @param force         [N], written; same size
 /// @param rig           spring in series, rigid unless given
-/// @throws InvalidArgument for an invalid law, sizes that differ, or for α > 1 a displacement
-/// beyond
-///   1.8e200 elastic limits of a branch, where the force still grows; for a spring that is invalid
-///   or 1e100 times softer than a branch
+/// @throws InvalidArgument for an invalid law, sizes that differ, and for a spring that is invalid
+/// or
+///   1e100 times softer than a branch
 /// The law's α is used as it stands, also for a model that prescribes one.
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
 /// 10⁶); closed loops leave nothing behind. |T| <= Tc. Cost: one branch
-/// law a sample and a branch; nothing is allocated per sample, 40 bytes per branch, and runs of one
+/// law a sample and a branch; nothing is allocated per sample, 32 bytes per branch, and runs of one
 /// branch have no data-dependent jump. With a spring the same errors, and up to 3 iterations a
 /// sample (bench/response_bench.cc); none for α = 0.
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,

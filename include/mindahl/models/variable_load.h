@@ -43,7 +43,7 @@ void Validate(const LoadDependentLaw& law);
 ///
 /// The contact is unloaded (T = 0) at displacement 0 under the first load, before the first sample.
 /// At N = 0 it is lifted off: T = 0, and nothing is remembered.
-/// @param displacement  δ [m], within ±1e307
+/// @param displacement  δ [m], within ±1e100
 /// @param normal_load   N [N], finite, >= 0; same size
 /// @param force         T [N], written; same size; |T| <= μN
 /// @throws InvalidArgument for an invalid law, sizes that differ, and naming the sample for a
@@ -87,7 +87,7 @@ struct ZonedContact {
 /// The contact before its first step: T = 0.
 struct InitialLoading {
   double normal_load = 0.0;            ///< N₀ [N], finite, >= 0; 0 for bodies yet to touch
-  double unloaded_displacement = 0.0;  ///< δ₀ [m], within ±1e307
+  double unloaded_displacement = 0.0;  ///< δ₀ [m], within ±1e100
 };
 
 /// A contact under a varying normal load that is moved step by step: the law of
@@ -103,7 +103,7 @@ class LoadedContactState {
 
   /// Moves on to δ and N and returns the force there. At N = 0 the contact is lifted off: T = 0,
   /// and nothing is remembered.
-  /// @param displacement  δ [m], within ±1e307
+  /// @param displacement  δ [m], within ±1e100
   /// @param normal_load   N [N], finite, >= 0
   /// @returns T [N]; |T| <= μN
   /// @throws InvalidArgument, the state being left as it was, for a displacement or a load out of
