@@ -22,8 +22,9 @@ std::string LeftOutRows::InWords() const {
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const TableColumn& of = columns.at(column);
   if (of.values.empty()) {
-    Refuse("{}:{}:{}: column {} holds no numbers", file,
-           lines.empty() ? header_line : lines.front(), column + 1, column + 1);
+    Refuse("{}:{}:{}: '{}' (column {}) holds no numbers", file,
+           lines.empty() ? header_line : lines.front(), column + 1, ForMessage(of.name),
+           column + 1);
   }
   if (!of.broken.empty()) throw InputError(of.broken);
   if (!of.missing.empty()) throw InputError(of.missing);

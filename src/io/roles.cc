@@ -290,8 +290,9 @@ class RoleAssigner {
     if (left.size() != missing.size()) ThrowNoColumn(missing.front());
     for (std::size_t k = 0; k < left.size(); ++k) {
       Take(left[k], missing[k]);
-      notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}", file_,
-                                   RulesOf(missing[k]).name, names_.Label(left[k])));
+      notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}{}", file_,
+                                   RulesOf(missing[k]).name, names_.Label(left[k]),
+                                   left.size() > 1 ? ", of two in their order" : ""));
     }
   }
 

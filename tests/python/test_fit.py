@@ -243,7 +243,7 @@ def test_arrays_outlive_their_result(sphere):
     ((42, [1.0]), "."),
     (([0, 1, 2], np.ma.masked_array([0.0, 1, 2], [False, True, False])), "force has masked values"),
     (({"a": [0.0, 1.0], "b": [1.0, 2.0], "c": [3.0, 4.0]},),
-     "with displacement and that of the force with force, by name or number"),
+     "choose it with displacement, by name or number"),
     (({"t [s]": [0.0, 1, 0.5], "x [m]": [0.0, 1, 0], "F [N]": [0.0, 1, 2]},),
      "time = 0.5 s is before the 1 s of the row above"),
     (({"x [m]": [0.0, 1, 2], "F [N]": [0.0, np.nan, 2]},), "record:2:2: holds no number"),
@@ -267,7 +267,7 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"sample_rate": -1}, "sample_rate -1: must be finite and > 0 Hz"),
     ({"displacement_unit": "furlong"}, "furlong"),
     ({"time": "t"}, "names a column, but the displacement is an array"),
-    ({"time_unit": "ms"}, "no column is recognised as the time"),
+    ({"time_unit": "ms"}, "no column for the time"),
 ])
 def test_an_option_that_breaks_a_rule_is_named_as_its_keyword(sphere, keywords, message):
     _, displacement, force = sphere
