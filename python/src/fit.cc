@@ -76,9 +76,7 @@ py::dict KeptOf(const py::object& self) {
 /// Returns the request that the options of `mindahl fit` make, without files.
 FitRequest RequestOf(const std::vector<std::string>& words) {
   FitRequest request;
-  cli::ReadOptions(words, [&request](CLI::App& app) {
-    cli::AddFitOptions(app, request);
-  });
+  cli::ReadOptions(words, [&request](CLI::App& app) { cli::AddFitOptions(app, request); });
   return request;
 }
 

@@ -55,6 +55,7 @@ std::vector<std::string_view> WordsOf(std::string_view name) {
       const auto* cut = std::adjacent_find(
           begin, end, [](char one, char next) { return IsSmall(one) && IsCapital(next); });
       if (cut != end) ++cut;
+      if (FindUnit({begin, end})) cut = end;  // "kN"
       words.emplace_back(begin, cut);
       begin = cut;
     }
@@ -151,7 +152,7 @@ std::string WithNarrowLetters(std::string_view text) {
 }
 
 /// Takes a unit off the end of a name: any behind a comma or a slash, else one that suits the words
-/// before it.
+/// before it; or finds one among the words of a name, which keeps it.
 void TakeUnitAtEnd(ColumnName& split) {
   constexpr std::string_view kSeparators = " _-.:=@|,;/<{[()]}>";
   constexpr std::string_view kBehind = " _-.:=@|,;/<{[()]}>0123456789";  // "force_kN_1"
@@ -181,6 +182,13 @@ void TakeUnitAtEnd(ColumnName& split) {
     // "F_N" is perhaps the normal force.
     if (LowerCase(name) != "f" || unit != "N") split.name = std::move(name);
     return;
+  }
+  for (const std::string_view word : WordsOf(plain)) {  // "Disp_um_raw"
+    const auto at = static_cast<std::size_t>(word.data() - plain.data());
+    const std::size_t before = plain.substr(0, at).find_last_not_of(' ');
+    const bool is_range = before != plain.npos && IsDigit(plain[before]);
+    const bool may_be = CharactersIn(word) > 1 && LowerCase(word) != "in" && !is_range;
+    if (may_be && MayHaveRole(DimensionOf(word), EvidenceOf(plain).role)) split.unit = word;
   }
 }
 

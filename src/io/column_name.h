@@ -41,7 +41,8 @@ struct ColumnName {
 /// Takes the unit off a header cell:
 ///   x [um]   F (kN)   F [kN] left   a unit in brackets; at the end also a word that is none known
 ///   Position, mm   x / mm           a unit behind a comma or a slash
-///   disp_mm   Force..kN.            a unit of what the name is as its last word
+///   disp_mm   pos_mm_filtered       a unit of what the name is among its words; of a single letter
+///                                   the last word
 /// Brackets without a unit, "pos (3)" and "Load [23.8 N]", are part of the name. A factor beside a
 /// unit, a range in another unit than the SI one, and a word for a ratio, make a unit that is none:
 /// "mm x1000", "5 kN", "normalized".
