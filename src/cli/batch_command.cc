@@ -22,17 +22,6 @@ struct BatchCommandOptions {
   std::string report_directory;
 };
 
-/// A directory that is there, or can be made where it is to be, and no file that is written.
-void RequireReportDirectory(const BatchCommandOptions& options) {
-  const std::string& directory = options.report_directory;
-  if (directory.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directory(directory, error);
-  if (!error && std::filesystem::is_directory(directory)) return;
-  Refuse("--report: '{}' is no directory, and none can be made: {}", directory,
-         error ? error.message() : "it is a file");
-}
-
 std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const Console& console) {
   const auto write_page = [&](const report::Report& report, std::size_t k) {
     io::WriteFileAtomically(
@@ -48,7 +37,11 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   RequireDistinctFiles(request.files);
   Validate(request.contact);  // before a directory is made
   MakeFitOptions(request);
-  RequireReportDirectory(options);
+  if (const std::string& directory = options.report_directory; !directory.empty()) {
+    std::error_code error;
+    std::filesystem::create_directory(directory, error);
+    if (error) Refuse("--report: cannot make '{}': {}", directory, error.message());
+  }
   const std::vector<BatchEntry> fits = FitInThreads(options, console);
   for (const BatchEntry& fit : fits) {
     Say("batch: note", fit.notes, console);

@@ -207,11 +207,6 @@ std::vector<std::string> InputsOf(const CLI::App& command);
 /// @throws InputError naming both
 void RequireDistinctFiles(std::span<const std::string> files);
 
-/// A table is the work of hours: it is written over only where that is asked for.
-/// @param remedy  what to add, for the message
-/// @throws InputError where a file is there
-void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy);
-
 /// Returns a word as a shell takes it: in single quotes where it needs them.
 std::string ShellWord(std::string_view word);
 

@@ -119,12 +119,6 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   }
 }
 
-void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return;  // a device loses nothing
-  Refuse("{}: {} exists: add {}", option, path, remedy);
-}
-
 report::Provenance ProvenanceOf(const std::string& command_line,
                                 std::span<const std::string> files) {
   report::Provenance provenance{.command = command_line, .inputs = {}};

@@ -210,8 +210,11 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
 void RequireTrackOptions(const TrackCommandOptions& options) {
   MakeCycleFitOptions(options.fit);
   Validate(options.fit.contact);
+  // A table is the work of hours; a device loses nothing.
+  std::error_code ignored;
   if (options.resume || options.overwrite) return;
-  RequireNotThere("--output", options.output, "--resume to go on with it, or --overwrite");
+  if (!std::filesystem::is_regular_file(options.output, ignored)) return;
+  Refuse("--output: {} exists: add --resume to go on with it, or --overwrite", options.output);
 }
 
 /// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their

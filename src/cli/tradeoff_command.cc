@@ -184,7 +184,6 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   const bool is_contact_given = IsAnythingGiven(options.law) || options.law.alpha;
   const BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
   const std::vector<MeasuredExcitation> measured = MeasureScenes(options, law);
-  Say("tradeoff: warning", DoubtsAbout(options.law.contact), console);
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(measured), options.plot);
   if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(measured));
@@ -215,7 +214,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                  {"mindahl tradeoff --path path.csv --displacement \"[um]\" --sigma 4e7 "
                   "--slip-force 40 --tolerance 1%",
                   "mindahl tradeoff --excitation micro --csv points.csv"});
-  AddLawOptions(command, options->law);
+  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
   const OptionGroup group(command, "Excitation");
   CLI::Option* const scenes =
       group

@@ -17,9 +17,6 @@ using identification::Term;
 
 namespace {
 
-/// The drift of a displacement that is fitted, where it alone is a term.
-constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
-
 /// Fits the terms of a group that are not given.
 void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   for (const std::string_view name : group.terms) {
@@ -42,7 +39,7 @@ void AddCompanionsOfFixed(FitOptions& fit) {
 void ApplyTerms(const FitRequest& request, FitOptions& fit) {
   const bool is_of_force = fit.response() == loop::Channel::kForce;
   for (const std::string& name : request.terms) {
-    if (!is_of_force || name == kDriftOfDisplacement) {
+    if (!is_of_force) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {
       AddGroup(*group, fit);

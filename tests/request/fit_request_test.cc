@@ -78,10 +78,6 @@ TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
               ElementsAre("viscous", "slip_slope", "plateau_slope"));
   EXPECT_THAT(MakeFitOptions(with({"lag", "oil pressure"})).covariates,
               ElementsAre("oil pressure"));
-  for (const auto& [terms, said] : {std::pair<std::vector<std::string>, const char*>(
-           {"displacement_drift"}, "has no place in a fit of the force")}) {
-    EXPECT_THAT(RefusalOf(with(terms)), HasSubstr(said));
-  }
 }
 
 TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
