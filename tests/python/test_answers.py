@@ -76,7 +76,7 @@ def test_validate_is_the_program_s():
     result = mindahl.command("validate", cases=2, seed=3)
     same_document(result, "validate", "--cases", "2", "--seed", "3")
     assert result.passed and result.established
-    assert set(result.to_pandas()["law"]) == {"masing", "dahl"}
+    assert len(result.to_pandas()) == 4 * 7  # noise levels and amplitudes
 
 
 @pytest.mark.parametrize("keywords, options", [
