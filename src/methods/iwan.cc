@@ -1,6 +1,6 @@
 #include "mindahl/methods/iwan.h"
 
-#include <algorithm>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "mindahl/core/error.h"
@@ -50,28 +50,15 @@ void EvaluateIwanForce(const IwanElements& elements, std::span<const double> dis
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   RequireSameSize("stiffness", elements.stiffness.size(), "slip force", elements.slip_force.size());
   for (const double at : displacement) RequireFinite("displacement [m]", at);
-  // Partial sums in lanes, for the sum to vectorise without reassociating it.
-  constexpr std::size_t kLanes = 4;
-  const std::size_t padded = (elements.size() + kLanes - 1) / kLanes * kLanes;
-  std::vector<double> stiffness = elements.stiffness;
-  std::vector<double> limit = elements.slip_force;
-  stiffness.resize(padded);
-  limit.resize(padded);
-  std::vector<double> element_force(padded);
+  const auto count = static_cast<Eigen::Index>(elements.size());
+  const Eigen::Map<const Eigen::ArrayXd> stiffness(elements.stiffness.data(), count);
+  const Eigen::Map<const Eigen::ArrayXd> limit(elements.slip_force.data(), count);
+  Eigen::ArrayXd of_element = Eigen::ArrayXd::Zero(count);
   double last = 0.0;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const double step = displacement[i] - last;
+    of_element = (of_element + stiffness * (displacement[i] - last)).max(-limit).min(limit);
+    force[i] = of_element.sum();
     last = displacement[i];
-    double sum[kLanes] = {};
-    for (std::size_t j = 0; j < padded; j += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const double trial = element_force[j + lane] + stiffness[j + lane] * step;
-        const double bounded = std::min(std::max(trial, -limit[j + lane]), limit[j + lane]);
-        element_force[j + lane] = bounded;
-        sum[lane] += bounded;
-      }
-    }
-    force[i] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
 }
 
