@@ -137,7 +137,7 @@ Plan MakePlan(const PlanOptions& options) {
     Protocol fewest;
     const std::optional<ExpectedFit> least = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
-        kShares.back() * plan.slip, {}, &fewest);
+        kShares.back() * plan.slip, &fewest);
     const bool any = fewest.amplitude > 0;
     plan.reached.push_back({{"initial_state", report::Name(state)},
                             {"least_amplitude", least ? Json(least->protocol.amplitude) : Json()},

@@ -28,30 +28,13 @@ namespace {
 
 using models::InitialState;
 
-/// @throws InvalidArgument for a term that is not planned for
-void RequireTerms(const FitOptions& options) {
-  for (const std::string& name : options.terms) {
-    const Term* const term = FindTerm(name);
-    if (term == nullptr || term->is_planned) continue;
-    throw InvalidArgument(fmt::format("'{}' cannot be planned for: must be one of {}", name,
-                                      fmt::join(PlannedTerms(), ", ")));
-  }
-  if (!options.covariates.empty()) {
-    throw InvalidArgument("a covariate cannot be planned for: it is not known before");
-  }
-}
-
-void RequirePlan(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
+void RequirePlan(const Expectation& expected, const Protocol& protocol) {
   models::Validate(expected.law);
   models::Validate(expected.rig);
   RequirePositive("force noise [N]", expected.force_noise);
   RequireNonNegative("displacement noise [m]", expected.displacement_noise);
   RequirePositive("amplitude [m]", protocol.amplitude);
   if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
-  if (options.model == nullptr || options.model->memory != models::Memory::kReturnPoint) {
-    throw InvalidArgument("the model of a plan must have Masing's rules: mindlin-dahl, mindlin");
-  }
-  RequireTerms(options);
 }
 
 /// The loop as it would be measured without noise.
@@ -120,19 +103,15 @@ double LawEvidence(const loop::Record& record, const Expectation& expected,
 
 }  // namespace
 
-ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
-                      const FitOptions& given) {
-  RequirePlan(expected, protocol, given);
+ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
+  RequirePlan(expected, protocol);
   const loop::Record record = LoopOf(expected, protocol);
-  FitOptions options = given;
+  FitOptions options;
   options.initial_states = {protocol.initial_state};
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
-  const bool fits_rig = std::ranges::find(options.terms, "rig_stiffness") != options.terms.end();
-  if (!IsRigid(expected.rig) && !fits_rig) {
-    options.fixed["rig_stiffness"] = expected.rig.stiffness;
-  }
+  if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
@@ -189,7 +168,7 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
 
 std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
                                           const WantedPrecision& wanted, double least, double most,
-                                          const FitOptions& options, Protocol* fewest) {
+                                          Protocol* fewest) {
   RequirePositive("least amplitude [m]", least);
   if (!(most > least)) ThrowInvalid("greatest amplitude [m]", most, "must exceed the least");
   constexpr int kLooks = 48;  // on a logarithmic scale
@@ -197,7 +176,7 @@ std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Pro
   const auto expect = [&](double amplitude) {
     Protocol at = protocol;
     at.amplitude = amplitude;
-    return ExpectFit(expected, at, options);
+    return ExpectFit(expected, at);
   };
   double best = std::numeric_limits<double>::infinity();
   double below = 0.0;

@@ -102,18 +102,6 @@ TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
   }
 }
 
-TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
-  Expectation expected = Quiet();
-  expected.rig.stiffness = 8e7;
-  const Protocol protocol = ProtocolOf(5.0);
-  const ExpectedFit known = ExpectFit(expected, protocol);
-  const ExpectedFit fitted = ExpectFit(expected, protocol, {.terms = {"rig_stiffness"}});
-  EXPECT_EQ(known.Find("rig_stiffness")->status, ParameterStatus::kFixed);
-  EXPECT_GT(ErrorOf(fitted, "rig_stiffness"), 0);
-  EXPECT_GT(ErrorOf(fitted, "sigma"), 3 * ErrorOf(known, "sigma"));
-  EXPECT_GT(ErrorOf(fitted, "alpha"), ErrorOf(known, "alpha"));
-}
-
 TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
   EXPECT_EQ(ExpectFit(Quiet(), ProtocolOf(0.8, InitialState::kSteady)).law_evidence, 0.0);
   const double evidence = ExpectFit(Quiet(), ProtocolOf(0.8)).law_evidence;
@@ -142,29 +130,9 @@ TEST(Plan, RefusesWhatMeansNothing) {
   expected.force_noise = 0.0;
   EXPECT_THROW(ExpectFit(expected, ProtocolOf(1.0)), InvalidArgument);
   EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(0.0)), InvalidArgument);
-  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), {.model = models::FindFrictionModel("dahl")}),
-               InvalidArgument);
-  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), {.terms = {"lag"}}), InvalidArgument);
   const ExpectedFit fit = ExpectFit(Quiet(), ProtocolOf(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
-}
-
-TEST(Plan, RefusesEveryTermButThoseThatItCanPlanFor) {
-  for (const Term& term : Terms()) {
-    if (term.presence == Presence::kOffsets) continue;  // are in every fit
-    const std::string name(term.name);
-    const bool is_planned = name == "rig_stiffness" || name == "plateau_slope" ||
-                            name == "viscous" || name == "force_drift";
-    const FitOptions options{.terms = {name}};
-    Expectation expected = Quiet();
-    expected.rig.stiffness = 8e7;
-    if (is_planned) {
-      EXPECT_NO_THROW(ExpectFit(expected, ProtocolOf(1.2), options)) << name;
-    } else {
-      EXPECT_THROW(ExpectFit(expected, ProtocolOf(1.2), options), InvalidArgument) << name;
-    }
-  }
 }
 
 }  // namespace

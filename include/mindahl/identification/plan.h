@@ -19,7 +19,7 @@ namespace mindahl::identification {
 /// Holds the assumed properties of the contact and the noise of the channels.
 struct Expectation {
   models::BranchLaw law{};          ///< law with Masing's memory
-  models::SeriesSpring rig{};       ///< in series; its stiffness known unless it is fitted
+  models::SeriesSpring rig{};       ///< in series; its stiffness is known
   double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
 };
@@ -50,16 +50,14 @@ struct ExpectedFit {
   }
 };
 
-/// Computes the Cramér–Rao bound with the options' terms, from the exact derivatives at the values
-/// that are expected: what unbiased estimates cannot better, and what those of the fit attain where
-/// the likelihood is a parabola over their errors. Offsets are unknown, so are all terms asked for.
-/// @param options  of the fit; its model must be one of Masing's rules
+/// Computes the Cramér–Rao bound from the exact derivatives at the values that are expected: what
+/// unbiased estimates cannot better, and what those of the fit attain where the likelihood is a
+/// parabola over their errors. Offsets are unknown, a rig that is given is known.
 /// @throws InvalidArgument for values out of range, naming them
 /// Accuracy: the standard errors of simulated fits scatter about these by what their number leaves
 /// (tests/identification/plan_test.cc: 150 loops, 17 %), unless an error is of the order of its
 /// parameter.
-ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
-                      const FitOptions& options = {});
+ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol);
 
 /// A standard error that is wanted.
 struct Precision {
@@ -67,7 +65,7 @@ struct Precision {
   bool is_relative = false;
 };
 
-/// Maps a parameter ("sigma", "alpha", "slip_force", or a fitted term) to its wanted precision.
+/// Maps a parameter ("sigma", "alpha", "slip_force" …) to its wanted precision.
 using WantedPrecision = std::map<std::string, Precision>;
 
 /// Returns the factor on the protocol's number of cycles that reaches the wanted precision, errors
@@ -81,7 +79,6 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
 /// among those looked at that needs the fewest cycles, its number of cycles being those.
 std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
                                           const WantedPrecision& wanted, double least, double most,
-                                          const FitOptions& options = {},
                                           Protocol* fewest = nullptr);
 
 }  // namespace mindahl::identification

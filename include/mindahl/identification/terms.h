@@ -122,7 +122,6 @@ struct Term {
   ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
   TheoryBound theory_bound = TheoryBound::kNone;
   bool is_never_negative = false;  ///< a mass or a damping that is stands for something else
-  bool is_planned = false;         ///< its column follows from a protocol, before any record
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
@@ -165,9 +164,6 @@ std::span<const TermGroup> TermGroups();
 
 /// Returns nullptr where there is none of that name.
 const TermGroup* FindTermGroup(std::string_view name);
-
-/// Returns the names of the terms that can be planned for.
-std::vector<std::string_view> PlannedTerms();
 
 /// Returns the name without a record's number: force_offset for force_offset_2.
 std::string_view TermNameOf(std::string_view parameter);

@@ -82,7 +82,6 @@ constexpr std::array kTermRows = {
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
          .powers = kStiffnessUnit,
-         .is_planned = true,
          .group = "rig_stiffness"},
     Term{.name = "load_exponent",
          .meaning = "p of σ ∝ N^p, for records whose loads differ",
@@ -101,7 +100,6 @@ constexpr std::array kTermRows = {
          .meaning = "slope of an additional force slope·δ",
          .powers = kStiffnessUnit,
          .is_linear = true,
-         .is_planned = true,
          .group = "plateau_slope"},
     Term{.name = "viscous",
          .unit = "N s/m",
@@ -110,7 +108,6 @@ constexpr std::array kTermRows = {
          .is_linear = true,
          .needs_time = true,
          .is_never_negative = true,
-         .is_planned = true,
          .group = "viscous"},
     Term{.name = "speed_exponent",
          .meaning =
@@ -278,7 +275,6 @@ constexpr std::array kTermRows = {
          .presence = Presence::kReported,
          .powers = {.force = 1, .time = -1, .of_file = true},
          .is_linear = true,
-         .is_planned = true,
          .group = "force_drift"},
     Term{.name = "displacement_drift",
          .unit = "m/s",
@@ -386,14 +382,6 @@ const TermGroup* FindTermGroup(std::string_view name) {
   const std::span<const TermGroup> groups = TermGroups();
   const auto group = std::ranges::find(groups, name, &TermGroup::name);
   return group == groups.end() ? nullptr : &*group;
-}
-
-std::vector<std::string_view> PlannedTerms() {
-  std::vector<std::string_view> names;
-  for (const Term& term : kTerms) {
-    if (term.is_planned) names.push_back(term.name);
-  }
-  return names;
 }
 
 std::string_view TermNameOf(std::string_view parameter) {
