@@ -54,15 +54,6 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
   AddColumns(with_all, prepared_, /*with_others=*/false, data_);
 }
 
-std::vector<std::vector<bool>> TermScores::LeftOut() const {
-  std::vector<std::vector<bool>> left_out;
-  for (const loop::PreparedRecord& record : prepared_.records) {
-    std::vector<bool>& mask = left_out.emplace_back();
-    for (const unsigned char counts : record.counts) mask.push_back(counts == 0);
-  }
-  return left_out;
-}
-
 Problem TermScores::ProblemOf(const FitOptions& options) const {
   FitOptions with_columns = options;
   with_columns.covariates = covariates_;

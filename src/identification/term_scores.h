@@ -45,8 +45,6 @@ class TermScores {
              std::span<const TermChoice> choices);
 
   [[nodiscard]] const loop::PreparedRecords& prepared() const { return prepared_; }
-  /// Returns the samples that do not count under any of the terms.
-  [[nodiscard]] std::vector<std::vector<bool>> LeftOut() const;
 
   /// Takes a fit to step from.
   /// @param options  of that fit

@@ -250,7 +250,6 @@ class Selection {
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
   std::vector<Alternative> alternatives_;
-  std::vector<std::vector<bool>> held_out_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
 };
@@ -263,9 +262,8 @@ std::optional<std::size_t> Selection::Find(std::string_view name) const {
   return found - candidates_.begin();
 }
 
-/// Prepares the records for all candidates at once, since what a lag leaves out is left out for
-/// all, and fits the law to them.
-/// @returns false where it has no fit
+/// Prepares the records for all candidates at once.
+/// @returns false where the law has no fit
 bool Selection::Begin(const FitOptions& options, const FitResult& law) {
   candidates_ = TermCandidates(records_, options, law);
   std::vector<TermChoice> choices;
@@ -282,16 +280,13 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law) {
     choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(*lag));
     scores_.emplace(records_, as_fitted, choices);
   }
-  held_out_ = scores_->LeftOut();
   drawn_ = loop::DrawReadings(scores_->prepared());
   facts_ = law.WidestRecord().facts;
   base_ = {.options = options, .fit = law};
-  // A lag only leaves out more.
-  const bool counts_alike =
-      std::ranges::equal(scores_->prepared().records, law.records, {},
-                         &loop::PreparedRecord::left_out, &RecordFit::left_out);
+  // As the candidates are fitted: with a slip force that may leave what was measured, as it does
+  // for the want of a term.
   const std::map<std::string, double> none;
-  if (!counts_alike) base_ = FitWith({}, &none);
+  base_ = FitWith({}, &none);
   return IsFitted(base_.fit) && base_.fit.converged;
 }
 
@@ -362,7 +357,6 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
     for (const auto& [name, value] : *starts) options.start[name] = value;
   }
   options.preparation.force_sense = base_.fit.force_sense;
-  options.preparation.held_out = held_out_;
   options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
   model.fit = FitTo(options, Depth::kEstimate);
   return model;
@@ -434,12 +428,16 @@ bool Selection::Round() {
   std::erase_if(gains, [&](const Gain& gain) {
     return gain.score.gain < Limits().worthwhile_gain || !(gain.score.p_value < chance);
   });
+  constexpr double kMost = 0.5;
   const std::vector<Gain> explaining = gains;
   std::erase_if(gains, [&](const Gain& gain) { return IsRefused(gain); });
   while (!gains.empty() && fits_ + kLastFits < kMostFits) {
     const Gain& best = Simplest(gains);
     const std::size_t candidate = best.candidate;
-    if (Add(candidate, FitWith(candidates_[candidate].choice, &best.score.values))) {
+    const TermChoice& choice = candidates_[candidate].choice;
+    // A search from a solution that most of the misfit has led astray may end elsewhere.
+    if (Add(candidate, FitWith(choice, &best.score.values)) ||
+        (best.score.gain > kMost && Add(candidate, FitWith(choice, nullptr)))) {
       KeepAlternatives(best, explaining);
       return true;
     }
