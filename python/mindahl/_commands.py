@@ -169,7 +169,6 @@ def excitation(
 def simulate(
     displacement: Any, *, sigma: float, slip_force: float, alpha: Optional[float] = None,
     model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None, asymmetry: float = 0.0,
-    load: Any = None, reference_load: float = 1.0,
 ) -> Floats:
     """Computes the tangential force [N] of a contact along a displacement, exactly for any history.
 
@@ -180,16 +179,13 @@ def simulate(
     model: "mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl".
     rig_stiffness: of a spring [N/m] in series, by default rigid.
     asymmetry: A of slip forces Tc(1 ± A) [-], in (-1, 1).
-    load: array, of "dahl": the force is in proportion to it, slip_force being that under
-        reference_load; of either sign, as the torque that a joint carries.
     Returns an array of the same length. Noise is NumPy's: + rng.normal(0, deviation, force.size).
     Raises ValueError naming the quantity, its value and the rule.
     """
     numbers = {name: number(name, value) for name, value in locals().items()
-               if name not in ("displacement", "model", "load")
+               if name not in ("displacement", "model")
                and not (value is None and name in ("alpha", "rig_stiffness"))}
-    return _mindahl.simulate(array("displacement", displacement), model=model,
-                             load=None if load is None else array("load", load), **numbers)
+    return _mindahl.simulate(array("displacement", displacement), model=model, **numbers)
 
 
 def plan(

@@ -397,7 +397,7 @@ class FitResult(Told):
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
         force = _mindahl.simulate(
             array("displacement", displacement) - origin, model=self._report["model"],
-            load=None, gate=self._kept["reversal_gate"], **own)
+            gate=self._kept["reversal_gate"], **own)
         return offset + int(self._kept["force_sign"]) * force
 
     def summary(self) -> str:

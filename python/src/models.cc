@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,29 +47,33 @@ models::SeriesSpring RigOf(std::optional<double> stiffness) {
   return {.stiffness = *stiffness};
 }
 
+/// Computes the friction of a joint [N] under one load.
+void SimulateJoint(const FrictionModel& model, const BranchLaw& law, double asymmetry,
+                   std::span<const double> displacement, std::span<double> force) {
+  if (!(std::abs(asymmetry) < 1)) {
+    ThrowInvalid("asymmetry [-]", asymmetry, "must be in (-1, 1)");
+  }
+  Validate(law);
+  const double slip_force = law.slip_force;
+  const py::gil_scoped_release others_may_run;
+  ContactState state(model, {law.tangential_stiffness / slip_force, law.shape_exponent, 1.0});
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    force[i] = slip_force * models::JointForce(state.Move(displacement[i]), 1.0, asymmetry);
+  }
+}
+
 py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
                              std::optional<double> alpha, const std::string& model_name,
-                             std::optional<double> rig_stiffness, double asymmetry,
-                             const std::optional<Array>& load, double reference_load, double gate) {
+                             std::optional<double> rig_stiffness, double asymmetry, double gate) {
   const models::SimplifiedLaw* const simple = models::FindSimplifiedLaw(model_name);
   const FrictionModel& model = RequireModel(simple != nullptr ? "dahl" : model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
   const std::span<const double> samples = SpanOf(displacement);
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
-  const bool is_joint = model.memory == models::Memory::kNone && simple == nullptr;
-  if (load && !is_joint) {
-    throw InputError("--load is of --model dahl alone: leave it out, or use that model");
-  }
-  if (is_joint && (load || asymmetry != 0)) {
-    if (rig_stiffness)
-      throw InputError("--rig-stiffness is refused beside a load and an asymmetry");
-    const std::vector<double> constant(load ? 0 : samples.size(), reference_load);
-    const std::span<const double> loads = load ? SpanOf(*load) : constant;
-    const py::gil_scoped_release others_may_run;
-    models::EvaluateJointFriction(
-        {.law = law, .reference_load = reference_load, .asymmetry = asymmetry}, samples, loads,
-        written);
+  if (model.memory == models::Memory::kNone && simple == nullptr && asymmetry != 0) {
+    if (rig_stiffness) throw InputError("--rig-stiffness is refused beside an asymmetry");
+    SimulateJoint(model, law, asymmetry, samples, written);
     return force;
   }
   if (simple != nullptr) {
@@ -104,7 +109,7 @@ void AddModels(py::module_& module) {
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha") = py::none(), py::arg("model"),
              py::arg("rig_stiffness") = py::none(), py::arg("asymmetry") = 0.0,
-             py::arg("load") = py::none(), py::arg("reference_load") = 1.0, py::arg("gate") = 0.0);
+             py::arg("gate") = 0.0);
   py::class_<ContactState>(module, "ContactState",
                            R"(A contact that is moved step by step.
 

@@ -14,7 +14,6 @@
 #include "mindahl/loop/record.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/joint_friction.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 
@@ -36,7 +35,6 @@ const loop::PreparationOptions kPreparation{.cycles = loop::CountRange{.first = 
 const loop::Record kRecord{.displacement = {0.0, 1.0}, .force = {0.0, 1.0}};
 const models::ContactStateOptions kState{.unloaded_displacement = 1e-6};
 const models::ExcitationOptions kExcitation{.cycles = 2.0};
-const models::JointFriction kJoint{.asymmetry = 0.1};
 const request::ContactOptions kContactOptions{.friction_coefficient = {}};
 const request::FitRequest kRequest{.files = {"loop.csv"}};
 const request::LawRequest kLaw{.slip_force = 15.0};

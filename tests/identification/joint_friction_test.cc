@@ -1,11 +1,10 @@
-#include "mindahl/models/joint_friction.h"
-
 #include <ceres/ceres.h>
 #include <ceres/gradient_checker.h>
 
 #include "mindahl/identification/ceres_problem.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
+#include "support/joint.h"
 #include "support/prelude.h"
 
 // Dahl's own law whose force follows the torque carried and differs between the directions.
@@ -37,16 +36,10 @@ Record RecordOf(const Drive& drive) {
     record.normal_load.push_back(drive.mean + drive.swing * std::cos(2 * phase + 0.4));
     record.time.push_back(0.01 * i);
   }
-  double magnitude = 0.0;
-  for (const double load : record.normal_load) magnitude += std::abs(load);
   std::vector<double> motion(drive.late, 0.0);
   motion.insert(motion.end(), record.displacement.begin(),
                 record.displacement.end() - static_cast<std::ptrdiff_t>(drive.late));
-  record.force.resize(motion.size());
-  models::EvaluateJointFriction({.law = drive.law,
-                                 .reference_load = magnitude / static_cast<double>(motion.size()),
-                                 .asymmetry = drive.asymmetry},
-                                motion, record.normal_load, record.force);
+  record.force = testing::JointForces(drive.law, drive.asymmetry, motion, record.normal_load);
   return record;
 }
 

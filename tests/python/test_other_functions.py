@@ -153,15 +153,15 @@ def test_a_joint_follows_the_torque_that_it_carries():
     generator = np.random.default_rng(12)
     angle = np.cumsum(generator.normal(size=300)) * 4e-4
     torque = 10 + 40 * np.cos(np.arange(300) / 17)
-    joint = {"sigma": 2500.0, "slip_force": 3.0, "alpha": 1.0, "asymmetry": -0.2,
-             "reference_load": 22.0}
-    force = mindahl.simulate(angle, load=torque, model="dahl", **joint)
+    state = mindahl.ContactState(sigma=2500 / 3, slip_force=1, alpha=1.0, model="dahl")
+    z = np.array([state.move(x) for x in angle])
+    force = 3 * (np.abs(torque) * z - 0.2 * torque * z**2) / 22
+    one_load = mindahl.simulate(angle, sigma=2500, slip_force=3, alpha=1.0, model="dahl", asymmetry=-0.2)
+    np.testing.assert_allclose(one_load, 3 * (z - 0.2 * z**2), rtol=0, atol=1e-12)
     fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", terms="asymmetry",
                       initial_state="virgin", reversal_gate=0)
     assert abs(fit.asymmetry.value + 0.2) < 1e-9
     assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9
-    with pytest.raises(ValueError, match="load is of model dahl alone"):
-        mindahl.simulate(angle, load=torque, sigma=1, slip_force=1)
 
 
 @pytest.mark.parametrize("call, message", [

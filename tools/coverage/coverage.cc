@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "../../tests/support/imposed_force.h"
+#include "../../tests/support/joint.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/joint_friction.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/models/variable_load.h"
@@ -236,13 +236,8 @@ Record DrivenRecord(const Scenario& scenario, double load, bool is_steady) {
                                    (1 + scenario.load_swing * std::cos(2 * kTwoPi * cycles)));
     }
     if (scenario.model == "dahl") {
-      double magnitude = 0.0;
-      for (const double value : record.normal_load) magnitude += std::abs(value);
-      models::EvaluateJointFriction(
-          {.law = law,
-           .reference_load = magnitude / static_cast<double>(record.size()),
-           .asymmetry = scenario.asymmetry},
-          record.displacement, record.normal_load, record.force);
+      record.force =
+          testing::JointForces(law, scenario.asymmetry, record.displacement, record.normal_load);
       return record;
     }
     models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / (kMeanLoad * load),
