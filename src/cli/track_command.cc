@@ -283,22 +283,12 @@ class TrackRun {
         command_(command),
         test_{.output = options.output, .energy = {.together = options.track.together}} {}
 
-  /// @throws InputError naming the place in a file; rows that are finished are kept
+  /// @throws InputError naming the place in a file; the batches before it are in the table
   TrackedTest Track() {
-    try {
-      Read();
-    } catch (const InputError& error) {
-      // Finished rows are kept, unless they are another run's, or there are none.
-      if (!tracker_ || !continues_table()) throw;
-      try {
-        if (!has_write_failed_) tracker_->Finish();
-        if (output_) output_->Finish();
-        // NOLINTNEXTLINE(bugprone-empty-catch): the disk, as the first one says
-      } catch (const InputError&) {
-      }
-      Refuse("{}; {} rows are kept in {}: repair the fault and add --resume", error.what(),
-             test_.fits, options_.output);
-    }
+    for (const std::string& file : options_.fit.files) ReadFile(file);
+    tracker_->Finish();
+    if (kept_.fits > 0) OpenTable();  // also of a record that ends with it, or before
+    if (output_) output_->Finish();
     test_.cycles = tracker_->cycles();
     test_.log = tracker_->log();
     if (test_.cycles == 0) {
@@ -316,8 +306,7 @@ class TrackRun {
  private:
   void BeginSource(const io::RecordFile& layout) {
     test_.files.push_back(layout.name);
-    if (!layout_) {
-      layout_ = layout;
+    if (test_.files.size() == 1) {
       test_.is_torsional = layout.is_torsional;
       test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     }
@@ -388,10 +377,10 @@ class TrackRun {
   /// Opens the table behind what is kept of it.
   void OpenTable() {
     if (output_) return;
-    if (!continues_table()) {
+    if (kept_.fits > 0 && tracker_->skipped_up_to() != kept_.checksum) {
       Refuse(
-          "--resume: {} was made from another record or with other options, or what "
-          "was read before "
+          "--resume: {} was made from another record or with other options, or what was read "
+          "before "
           "its row {} was another: give those, another --output, or --overwrite",
           options_.output, kept_.fits);
     }
@@ -401,7 +390,6 @@ class TrackRun {
 
   /// Appends the rows of a batch.
   void Take(std::span<const CycleFit> fits) {
-    has_write_failed_ = true;
     OpenTable();
     std::string rows;
     for (const CycleFit& fit : fits) {
@@ -410,30 +398,14 @@ class TrackRun {
     }
     output_->Append(rows);
     for (const CycleFit& fit : fits) test_.Add(fit);
-    has_write_failed_ = false;
-  }
-
-  /// Reads and fits all cycles.
-  void Read() {
-    for (const std::string& file : options_.fit.files) ReadFile(file);
-    tracker_->Finish();
-    if (kept_.fits > 0) OpenTable();  // also of a record that ends with it, or before
-    if (output_) output_->Finish();
-  }
-
-  /// True if the table on disk, where there is one to go on with, is of this record and options.
-  [[nodiscard]] bool continues_table() const {
-    return kept_.fits == 0 || tracker_->skipped_up_to() == kept_.checksum;
   }
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   TrackedTest test_;
-  std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
   KeptCycles kept_;
   std::optional<io::AppendedFile> output_;
-  bool has_write_failed_ = false;  // or is at work
 };
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
