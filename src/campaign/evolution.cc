@@ -1,6 +1,6 @@
 #include "mindahl/campaign/evolution.h"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -285,42 +285,15 @@ std::string RelativeChange(double from, double to) {
   return fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 0.1 ? 1 : 0);
 }
 
-/// Returns "0.352 → 0.600" or "250 → 400 µm".
-std::string FromTo(const std::vector<double>& values, const std::string& unit) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
+/// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
+std::string FromTo(double from, double to, const std::string& unit) {
+  const double largest = std::max(std::abs(from), std::abs(to));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
-  constexpr int kMost = 9;
-  const int decimals =
-      largest > 0
-          ? std::clamp(2 - static_cast<int>(std::floor(std::log10(largest / scaled.factor))), 0,
-                       kMost)
-          : 0;
-  std::vector<std::string> texts;
-  texts.reserve(values.size());
-  for (const double value : values) {
-    const std::string text = fmt::format("{:.{}f}", value / scaled.factor, decimals);
-    if (texts.empty() || text != texts.back()) texts.push_back(text);
-  }
-  return fmt::format("{}{}{}", fmt::join(texts, " → "), scaled.name.empty() ? "" : " ",
-                     scaled.name);
-}
-
-/// Returns the first value and the last, and between them the one that is
-/// farthest beyond both, if that is by more than half of what they differ.
-std::vector<double> Milestones(const CourseDescription& course) {
-  const auto [low, high] = std::minmax(course.from, course.to);
-  double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.from));
-  std::vector<double> values = {course.from, course.to};
-  for (const Change& change : course.changes) {
-    for (const double value : {change.from, change.to}) {
-      const double beyond = std::max(value - high, low - value);
-      if (beyond <= farthest) continue;
-      farthest = beyond;
-      values = {course.from, value, course.to};
-    }
-  }
-  return values;
+  const auto text = [&](double value) {
+    return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
+  };
+  const std::string last = text(to) == text(from) ? "" : " → " + text(to);
+  return fmt::format("{}{}{}{}", text(from), last, scaled.name.empty() ? "" : " ", scaled.name);
 }
 
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
@@ -367,7 +340,6 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
   for (Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
-    ++evolution.fits;
     if (!value || !std::isfinite(*value) || fit.HasFlag(quantity.open_flag) ||
         fit.HasFlag("not_converged") || fit.HasFlag("rows_missing")) {
       continue;
@@ -404,20 +376,15 @@ std::string Headline(std::span<const Evolution> evolutions) {
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
-    std::vector<double> values = {evolution.course.first(), evolution.course.last()};
     if (course.changed()) {
-      values = Milestones(course);
+      const bool in_percent = quantity.name == "sigma";
+      const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
+      text += change.empty() ? FromTo(course.from, course.to, evolution.unit) : change;
     } else if (evolution.is_tested()) {
-      values = {course.from};  // one value stands for all where they differ by scatter only
-    }
-    const bool in_percent = quantity.name == "sigma" && course.changed() && values.size() == 2;
-    const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
-    text += change.empty() ? FromTo(values, evolution.unit) : change;
-    if (!course.changed()) {
-      text += evolution.is_tested() ? " throughout, but for scatter" : ", in too few rows to test";
-    }
-    if (!evolution.is_known()) {
-      text += fmt::format(" where it is known, in {} of {} rows", evolution.known, evolution.fits);
+      text += FromTo(course.from, course.from, evolution.unit) + " throughout, but for scatter";
+    } else {
+      text += FromTo(evolution.course.first(), evolution.course.last(), evolution.unit) +
+              ", in too few rows to test";
     }
     if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
   }
@@ -435,7 +402,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
           fmt::format("{}: {}, {}{}, {}", evolution.quantity->name,
                       change.is_step() ? fmt::format("a step at cycle {}", first)
                                        : fmt::format("cycles {} to {}", first, last),
-                      FromTo({from, to}, evolution.unit),
+                      FromTo(from, to, evolution.unit),
                       relative.empty() ? "" : " (" + relative + ")",
                       report::ChanceText(p_value, 1)));
     }

@@ -44,23 +44,6 @@ TEST(Headline, SaysTheTestInOneLine) {
   EXPECT_EQ(Headline({}), "");
 }
 
-TEST(Headline, SaysWhatIsFarBeyondFirstAndLast) {
-  EXPECT_EQ(Headline(std::vector<Evolution>{
-                Of("slip_force", "N",
-                   {.from = 60.5,
-                    .to = 60.1,
-                    .changes = {{1, 150, 60.2, 90.2, 1e-20}, {151, 300, 90.2, 60.3, 1e-20}}})}),
-            "Tc 60.5 → 90.2 → 60.1 N");
-}
-
-TEST(Headline, SaysInHowManyRowsAQuantityIsKnown) {
-  std::vector<Evolution> seized = {Of("slip_force", "N", {.from = 59.9, .to = 60.1})};
-  seized.front().fits = 198;
-  seized.front().known = 99;
-  EXPECT_EQ(Headline(seized),
-            "Tc 59.9 N throughout, but for scatter where it is known, in 99 of 198 rows");
-}
-
 TEST(Describe, StandsForAnUnchangedQuantityByItsMean) {
   Course course;
   for (std::size_t cycle = 1; cycle <= 60; ++cycle) course.Add(cycle, cycle % 2 == 0 ? 0.5 : 0.7);

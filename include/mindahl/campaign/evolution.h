@@ -98,11 +98,8 @@ struct Evolution {
   std::string unit = {};  ///< in the record
   Course course = {};
   CourseDescription description = {};
-  std::size_t fits = 0;   ///< number of fits that were added
-  std::size_t known = 0;  ///< number of these that determine it
+  std::size_t known = 0;  ///< number of fits that determine it
 
-  /// True if no more than one fit in twenty leaves it open.
-  [[nodiscard]] bool is_known() const { return 20 * (fits - known) <= fits; }
   /// True if there are enough values for a test of a change.
   [[nodiscard]] bool is_tested() const {
     constexpr std::size_t kFewest = 20;
@@ -135,9 +132,8 @@ struct DissipatedEnergy {
 };
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
-/// µm", and "60.5 → 90.2 → 60.1" where it was between far beyond both; the friction coefficient, or
-/// without a load the slip force, or the half gap where that is open, then stiffness and contact
-/// radius.
+/// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
+/// open, then stiffness and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, the largest first, of more
