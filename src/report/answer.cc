@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/text.h"
-#include "mindahl/identification/terms.h"
 #include "report/json.h"
 #include "report/statements.h"
 
@@ -71,7 +70,6 @@ class Writer {
     AddShape();
     AddLoad();
     AddTerms();
-    AddColumnsNotTried();
     AddLaw();
     Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
     AddMeasured();
@@ -217,20 +215,6 @@ class Writer {
       if (!IsMoot(report_, *term)) terms.push_back(TextOf(term->name, *term));
     }
     Add("terms", terms);
-  }
-
-  /// Says which columns the choice of terms took for repeats of another: one may be the cause.
-  void AddColumnsNotTried() {
-    if (!report_.terms) return;
-    std::vector<std::string> columns;
-    for (const identification::ConsideredTerm& term : report_.terms->considered) {
-      if (term.obstacle != "same_channel") continue;
-      columns.push_back(term.name.substr(identification::NameOfCovariate("").size()));
-    }
-    if (columns.empty()) return;
-    Add("not tried", fmt::format("column{} {}, as it moves like another: --covariate COL if one "
-                                 "causes the force",
-                                 columns.size() == 1 ? "" : "s", fmt::join(columns, ", ")));
   }
 
   void AddLaw() {

@@ -298,16 +298,6 @@ TEST(Answer, HasATermOnceInAnswerAndDetails) {
   EXPECT_EQ(text.find("viscous"), text.rfind("viscous")) << text;
 }
 
-TEST(Answer, NamesTheColumnsThatWereTakenForRepeats) {
-  ReportInput input = Doubtful();
-  input.terms.emplace();
-  identification::ConsideredTerm column;
-  column.name = "covariate_6";
-  column.obstacle = "same_channel";
-  input.terms->considered = {column};
-  EXPECT_THAT(LineOf(input, "not tried"), StartsWith("column 6, as it moves like another"));
-}
-
 TEST(Answer, NamesACauseWithoutATermInPlaceOfANextStep) {
   ReportInput input = Doubtful();
   identification::Cause cause;
