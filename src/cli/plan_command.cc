@@ -189,7 +189,6 @@ Json ErrorRows(const Plan& plan) {
 std::string ToText(const PlanOptions& options, const Plan& plan) {
   const Expectation& expected = plan.expected;
   const models::BranchLaw& law = expected.law;
-  const double cycles = options.protocol.cycles;
   std::string text = fmt::format("expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N",
                                  law.tangential_stiffness, law.shape_exponent, law.slip_force);
   if (!std::isinf(expected.rig.stiffness)) {
@@ -197,7 +196,7 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
   }
   text += fmt::format(
       "; noise {:.4g} N and {:.4g} m a\nsample; a sine of {:g} cycles, {} samples each\n",
-      expected.force_noise, expected.displacement_noise, cycles,
+      expected.force_noise, expected.displacement_noise, options.protocol.cycles,
       options.protocol.samples_per_cycle);
   for (const std::string& note : plan.notes) text += "note: " + note + '\n';
   text += fmt::format(
@@ -207,23 +206,9 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
       "fit often\n  leaves Tc open where its error is above 7 %, alpha above 0.05.\n",
       report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
-  text += fmt::format("\nwanted: {}\n", fmt::join(options.want, ", "));
-  for (const Json& reached : plan.reached) {
-    const Json& least = reached["least_amplitude"];
-    const Json& fewest = reached["fewest_cycles"];
-    text += fmt::format("  {}: ", report::CellText(reached["initial_state"]));
-    if (!least.is_null()) {
-      text += fmt::format("X = {:.3g} m (least), {:.3g} times the displacement at slip\n",
-                          least.get<double>(), least.get<double>() / plan.slip);
-    } else if (!fewest.is_null()) {
-      text += fmt::format(
-          "no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n", cycles,
-          reached["amplitude_of_fewest_cycles"].get<double>(), fewest.get<double>());
-    } else {
-      text += "no amplitude determines it\n";
-    }
-  }
-  return text;
+  constexpr int kDigits = 3;
+  return text + fmt::format("\nwanted: {} (amplitudes in m)\n{}", fmt::join(options.want, ", "),
+                            report::TableText(plan.reached, kDigits));
 }
 
 std::string ToJson(const Plan& plan) {
