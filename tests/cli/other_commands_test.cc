@@ -168,8 +168,7 @@ TEST_F(Tradeoff, NamesTheCheapestAlongAPath) {
                     Contains(StartsWith("and of the dissipated energy: mindlin by exact"))));
   EXPECT_THAT(cheapest("1e6"),
               Contains(StartsWith("cheapest within 1 % of the peak force: coulomb")));
-  EXPECT_THAT(cheapest("0.8"),
-              Contains(HasSubstr("mindlin by exact, 8.2 ns/sample: nothing cheaper")));
+  EXPECT_THAT(cheapest("0.8"), Contains(HasSubstr("mindlin by exact, 8.2 ns/sample")));
 }
 
 }  // namespace
