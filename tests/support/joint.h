@@ -17,9 +17,8 @@ inline std::vector<double> JointForces(const models::BranchLaw& law, double asym
   double magnitude = 0.0;
   for (const double value : load) magnitude += std::abs(value);
   const double reference_load = magnitude / static_cast<double>(load.size());
-  models::ContactState state(
-      *models::FindFrictionModel("dahl"),
-      {law.tangential_stiffness / law.slip_force, law.shape_exponent, 1.0});
+  models::ContactState state(*models::FindFrictionModel("dahl"),
+                             {law.tangential_stiffness / law.slip_force, law.shape_exponent, 1.0});
   std::vector<double> force;
   for (std::size_t i = 0; i < load.size(); ++i) {
     force.push_back(law.slip_force * models::JointForce(state.Move(displacement[i]),
