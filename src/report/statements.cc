@@ -140,6 +140,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"asymmetry_not_identifiable", "the loop stays below slip"},
     {"slip_force_bounded_below",
      "the force does not level off: raise the amplitude until it does (mindahl plan says how far)"},
+    {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",

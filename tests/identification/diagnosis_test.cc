@@ -31,6 +31,10 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   findings = FindOpenSlipForce(result);
   EXPECT_EQ(findings[0].Number("peak_force"), 1.75) << "as the report has it";
   EXPECT_EQ(findings[0].Number("amplitude"), 0.5e-6);
+  EXPECT_EQ(findings[0].kind, "");
+  result.records[0].facts.energy_ratio = 0.9;
+  result.records[0].facts.half_gap = 1.5;
+  EXPECT_EQ(FindOpenSlipForce(result)[0].kind, "slides") << "a larger amplitude is no remedy";
   result.parameters[1].status = ParameterStatus::kFixed;
   EXPECT_EQ(FindOpenSlipForce(result).size(), 1U);
 }

@@ -143,6 +143,8 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
   input.fit.findings = {{.code = "slip_force_bounded_below", .parameters = {"slip_force"}}};
   EXPECT_THAT(LineOf(input, "friction"),
               StartsWith("μ > 0.784, Tc > 39.2 N: the force does not level off"));
+  input.fit.findings.front().kind = "slides";
+  EXPECT_THAT(LineOf(input, "friction"), HasSubstr("keeps changing while the contact slides"));
 }
 
 TEST(Answer, OfALowerBoundSaysNoMoreOfWhatFollows) {

@@ -135,7 +135,8 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
       {.code = "slip_force_bounded_below",
        .parameters = {"slip_force"},
        .numbers = {{"peak_force", facts.closed ? facts.peak_force : measures.peak_force},
-                   {"amplitude", facts.closed ? facts.amplitude : measures.amplitude}}});
+                   {"amplitude", facts.closed ? facts.amplitude : measures.amplitude}},
+       .kind = loop::Slides(facts) ? "slides" : ""});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
     findings.push_back(
         {.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
