@@ -8,6 +8,7 @@
 
 #include "core/probability.h"
 #include "identification/dense.h"
+#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/moved_samples.h"
 #include "identification/problem/scaled_records.h"

@@ -10,6 +10,7 @@
 #include "io/drawing.h"
 #include "mindahl/report/report.h"
 #include "report/html.h"
+#include "report/json.h"
 #include "report/statements.h"
 
 namespace mindahl::report {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/probability.h"
+#include "loop/statistics.h"
 
 namespace mindahl::identification {
 
