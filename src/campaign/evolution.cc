@@ -11,7 +11,6 @@
 
 #include "core/probability.h"
 #include "mindahl/report/units.h"
-#include "report/statements.h"
 
 namespace mindahl::campaign {
 
@@ -276,6 +275,12 @@ constexpr std::array kQuantities = {
     TrackedQuantity{"energy_ratio", "", ""},
 };
 
+/// Returns "p = 0.01"; no p-value is 0.
+std::string ChanceText(double p_value) {
+  constexpr double kLeast = 1e-12;
+  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.1g}", p_value);
+}
+
 /// Returns "+60 %"; nothing where the sign changes or it grows more than
 /// tenfold.
 std::string RelativeChange(double from, double to) {
@@ -403,8 +408,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
                       change.is_step() ? fmt::format("a step at cycle {}", first)
                                        : fmt::format("cycles {} to {}", first, last),
                       FromTo(from, to, evolution.unit),
-                      relative.empty() ? "" : " (" + relative + ")",
-                      report::ChanceText(p_value, 1)));
+                      relative.empty() ? "" : " (" + relative + ")", ChanceText(p_value)));
     }
   }
   std::ranges::stable_sort(statements, std::greater<>(), &std::pair<double, std::string>::first);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mindahl/core/error.h"
+#include "mindahl/models/loading_path.h"
 
 namespace mindahl::models {
 namespace {
@@ -31,8 +32,7 @@ void RequireExcitation(const ExcitationOptions& options) {
     ThrowInvalid("samples per cycle [-]", static_cast<double>(options.samples_per_cycle),
                  "must be >= 4 and <= 1e9");
   }
-  constexpr double kLargestAmplitude = 1e100;  // [m], as of a loading path
-  if (options.amplitude > kLargestAmplitude) {
+  if (options.amplitude > kLargestPathDisplacement) {
     ThrowInvalid("amplitude [m]", options.amplitude, "must be <= 1e100");
   }
   constexpr double kMostSamples = 1e9;

@@ -91,12 +91,6 @@ std::string NextStatement(const Report& report, const NextStep& next) {
                      MisfitShare(report, next.misfit_after));
 }
 
-std::string ChanceText(double p_value, int digits) {
-  constexpr double kLeast = 1e-12;
-  if (p_value < kLeast) return "p < 1e-12";
-  return fmt::format("p = {:.{}g}", p_value, digits);
-}
-
 void RequireFitted(const Report& report, std::string_view what) {
   if (!report.failed()) return;
   throw InvalidArgument(fmt::format("a fit that failed has no curve and no residual for {}: {}",

@@ -90,9 +90,6 @@ std::string MisfitShare(const Report& report, double over_half_gap);
 /// Says what the next step would do: "a lag, misfit 5.6 % → 2.1 % of the half gap (tried)".
 std::string NextStatement(const Report& report, const NextStep& next);
 
-/// Returns "p = 0.01"; no p-value is 0.
-std::string ChanceText(double p_value, int digits);
-
 /// Describes a finding in at most some twenty words, without an end of line, naming no parameter:
 /// what was found and, where something can be done, what to do; the code alone where it is unknown.
 std::string Sentence(const Finding& finding, const FitResult& fit,
