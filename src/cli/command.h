@@ -41,8 +41,7 @@ using request::Strictness;
 
 /// Adds a command to the program.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
-/// continues
-///   the last begins with blanks
+///                  continues the last begins with blanks
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
                      std::initializer_list<std::string_view> examples);
 

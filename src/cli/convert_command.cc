@@ -155,7 +155,7 @@ void RunConvert(ConvertOptions request, Console& console) {
     if (made.input_lines.empty()) {
       Refuse("--input-lines for LAMMPS need --normal-load: friction coefficient Tc/N");
     }
-    // What is for mindahl simulate are options, which have no comments.
+    // Lines for mindahl simulate are command line options, which cannot contain comments.
     const bool has_comments = !made.input_lines.front().starts_with("--");
     WriteText(fmt::format("{}{}\n", has_comments ? "# " + error_text + '\n' : "",
                           fmt::join(made.input_lines, "\n")),

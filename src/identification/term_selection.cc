@@ -283,8 +283,8 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law) {
   drawn_ = loop::DrawReadings(scores_->prepared());
   facts_ = law.WidestRecord().facts;
   base_ = {.options = options, .fit = law};
-  // As the candidates are fitted: with a slip force that may leave what was measured, as it does
-  // for the want of a term.
+  // The law is fitted again as the candidates are, without an upper bound on the slip force: a
+  // missing term may drive it beyond the measured force.
   const std::map<std::string, double> none;
   base_ = FitWith({}, &none);
   return IsFitted(base_.fit) && base_.fit.converged;

@@ -316,7 +316,7 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
 }
 
 std::string HtmlText(std::string_view text) {
-  // What is not UTF-8 is left out.
+  // The conversion omits bytes that are not valid UTF-8.
   const std::string valid =
       boost::locale::conv::utf_to_utf<char>(text.data(), text.data() + text.size());
   std::string escaped;

@@ -50,7 +50,7 @@ LoadingPath PathOf(const FrictionModel& model, const Drive& drive) {
 }
 
 Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
-  // Of Jenkins' element the law is hidden by finding the branch.
+  // The law of a Jenkins element (α = 0) adds no measurable time to finding the branch.
   const double evaluation = law.shape_exponent == 0         ? 0.0
                             : law.shape_exponent == 1.0 / 3 ? kRoot
                                                             : kPower;

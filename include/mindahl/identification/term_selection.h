@@ -14,8 +14,7 @@ namespace mindahl::identification {
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
   std::string name;  ///< name of the group, or NameOfCovariate()
-  /// Fraction by which the rms error of predicted cycles would fall to first order, of fitted
-  /// samples where there are too few strokes to predict [–].
+  /// Fraction by which it would reduce the rms of the residuals, to first order [–].
   double gain = 0.0;
   bool added = false;
   /// Reason why it was not added: "", of one that gains "confounded", "unphysical" or

@@ -73,8 +73,7 @@ struct CsvTable {
 /// @param encoding     as iconv calls it; "" for UTF-8, UTF-16 with its mark, or, with a note,
 ///   Shift-JIS or Windows-1252 by the first bytes
 /// @throws InputError also when the file cannot be read: one that holds a zero byte or a line of
-/// more
-///   than 16 MiB is read no further
+///   more than 16 MiB is read no further
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {});
 
 /// Returns a table of columns that are in memory, to be read as a file with these names in its

@@ -32,8 +32,7 @@ void Validate(const SeriesSpring& rig);
 /// @param force         [N], written; same size
 /// @param rig           spring in series, rigid unless given
 /// @throws InvalidArgument for an invalid law, sizes that differ, and for a spring that is invalid
-/// or
-///   1e100 times softer than a branch
+///   or 1e100 times softer than a branch
 /// The law's α is used as it stands, also for a model that prescribes one.
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
