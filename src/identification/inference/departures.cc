@@ -16,17 +16,10 @@ double Position(const Place& at) { return at.force * at.displacement; }
 double PositionOfSize(const Place& at) { return std::abs(at.force) * at.displacement; }
 double Lag(const Place& at) { return -at.rate; }
 
-template <int kHalfWaves>
-double HalfWaves(const Place& at) {
-  return at.direction * std::sin(kHalfWaves * std::numbers::pi * at.Mobilised());
-}
+/// A branch of another shape between the same ends.
 template <int kHalfWaves>
 double Bulge(const Place& at) {
-  return at.reach * HalfWaves<kHalfWaves>(at);
-}
-template <int kHalfWaves>
-double BulgeOfDisplacement(const Place& at) {
-  return at.span * HalfWaves<kHalfWaves>(at);
+  return at.change * std::sin(kHalfWaves * std::numbers::pi * at.progress);
 }
 
 constexpr auto kDepartures = std::to_array<Departure>({
@@ -47,30 +40,20 @@ constexpr auto kDepartures = std::to_array<Departure>({
     {.code = "normal_load",
      .columns = {{{[](const Place& at) { return at.force * at.load_change; }}}}},
     {.code = "shape_of_law",
-     .columns = {{{Bulge<1>, true}, {Bulge<2>, true}, {Bulge<3>, true}}},
-     .of_displacement = {{{BulgeOfDisplacement<1>, true},
-                          {BulgeOfDisplacement<2>, true},
-                          {BulgeOfDisplacement<3>, true}}}},
+     .columns = {{{Bulge<1>}, {Bulge<2>}, {Bulge<3>}}},
+     .of_displacement = {{{Bulge<1>}, {Bulge<2>}, {Bulge<3>}}}},
     {.code = "guide_friction", .columns = {{{[](const Place& at) { return at.direction; }}}}},
     {.code = "rig_in_series",
      .group = "rig_stiffness",
-     .columns = {{{[](const Place& at) { return -at.slope * (at.carried - at.origin_carried); },
-                   true}}},
+     .columns = {{{[](const Place& at) { return -at.force; }, true}}},
      .of_displacement = {{{[](const Place& at) { return at.force; }}}}},
     {.code = "backlash",
      .group = "backlash",
-     .columns = {{{[](const Place& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; },
-                   true}}},
-     .of_displacement = {{{[](const Place& at) { return at.virgin ? 0.0 : at.direction / 2; }}}}},
+     .columns = {{{[](const Place& at) { return -at.direction; }, true}}},
+     .of_displacement = {{{[](const Place& at) { return at.direction; }}}}},
     {.code = "displacement_sensor",
-     .columns = {{{[](const Place& at) {
-                     return at.slope * (at.displacement * at.displacement - at.origin * at.origin);
-                   },
-                   true},
-                  {[](const Place& at) {
-                     return at.slope * (Cube(at.displacement) - Cube(at.origin));
-                   },
-                   true}}},
+     .columns = {{{[](const Place& at) { return at.displacement * at.displacement; }, true},
+                  {[](const Place& at) { return Cube(at.displacement); }, true}}},
      .of_displacement = {{{[](const Place& at) { return -at.displacement * at.displacement; }},
                           {[](const Place& at) { return -Cube(at.displacement); }}}}},
     {.code = "inertia", .group = "inertia", .columns = {{{[](const Place& at) {
@@ -101,8 +84,7 @@ constexpr auto kDepartures = std::to_array<Departure>({
     {.code = "covariate", .group = "covariate"},
     {.code = "smoothing", .columns = {{{[](const Place& at) { return at.curvature / 2; }}}}},
     // A turn is the first of its repeats, where nothing is missed.
-    {.code = "held_displacement",
-     .columns = {{{[](const Place& at) { return at.slope * at.missed; }, true}}}},
+    {.code = "held_displacement", .columns = {{{[](const Place& at) { return at.missed; }, true}}}},
     {.code = "displacement_drift",
      .group = "displacement_drift",
      .of_displacement = {{{[](const Place& at) { return at.time; }}}}},
@@ -169,24 +151,81 @@ bool HasTermOf(const Problem& problem, const Departure& departure) {
   });
 }
 
-/// Fills a column of all records' samples, weighted.
-void Fill(const DepartureColumn& column, const ScaledRecords& data,
-          std::span<const RecordPlaces> places, std::span<double> all) {
-  for (std::size_t r = 0; r < places.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
-    const std::span<double> values = all.first(record.size());
-    all = all.subspan(record.size());
-    if (column.is_along_branch) {
-      FillAlongBranches(column.value, places[r], values);
-    } else {
-      std::ranges::transform(places[r].samples, values.begin(), column.value);
+/// Makes columns of all records' samples, weighted.
+class ColumnMaker {
+ public:
+  ColumnMaker(const Problem& problem, std::span<const double> theta, const Thresholds& thresholds,
+              Response& response)
+      : problem_(problem),
+        theta_(theta),
+        places_(PlacesOf(problem, theta, thresholds.held_readings, response)) {}
+
+  void Fill(const DepartureColumn& column, std::span<double> values) {
+    std::ranges::transform(places_, values.begin(), column.value);
+    if (column.is_motion) FollowMotion(column, values);
+    Weigh(values);
+  }
+
+  void FillWithCovariate(std::size_t covariate, std::span<double> values) const {
+    auto to = values.begin();
+    for (const ScaledRecord& record : problem_.data->records) {
+      to = std::ranges::copy(record.covariates[covariate], to).out;
     }
-    const bool by_load = column.is_along_branch && !data.is_forced();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (by_load) values[i] *= record.LoadAt(i);
-      values[i] *= record.root_weight[i];
+    Weigh(values);
+  }
+
+ private:
+  void FollowMotion(const DepartureColumn& column, std::span<double> motion);
+  void Weigh(std::span<double> values) const {
+    auto value = values.begin();
+    for (const ScaledRecord& record : problem_.data->records) {
+      for (const double root_weight : record.root_weight) *value++ *= root_weight;
     }
   }
+
+  const Problem& problem_;
+  std::span<const double> theta_;
+  std::vector<Place> places_;
+  std::vector<double> unmoved_;  // response of the contact
+  std::optional<ScaledRecords> moved_;
+};
+
+/// Replaces a motion of the contact beside its displacement by what it changes in the response.
+void ColumnMaker::FollowMotion(const DepartureColumn& column, std::span<double> motion) {
+  constexpr double kSmall = 1e-6;  // of the half range of the displacement
+  Response response;
+  const auto evaluate = [&](const Problem& problem, std::span<const double> theta,
+                            std::span<double> to) {
+    response.Bind(problem);
+    response.Evaluate(PointAt(problem, theta), to);
+  };
+  if (!moved_) {
+    moved_ = *problem_.data;
+    unmoved_.resize(problem_.size());
+    evaluate(problem_, theta_, unmoved_);
+  }
+  double largest = 0.0;
+  for (const double way : motion) largest = std::max(largest, std::abs(way));
+  if (largest == 0) return;
+  const double step = kSmall / largest;
+  std::vector<double> theta(theta_.begin(), theta_.end());
+  std::size_t k = 0;
+  for (std::size_t r = 0; r < moved_->records.size(); ++r) {
+    const std::vector<double>& measured = problem_.data->records[r].displacement;
+    if (problem_.states[r] == models::InitialState::kVirgin) {
+      double& unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
+      Place first = places_[k];
+      if (measured[0] != unloaded) first.direction = std::copysign(1.0, measured[0] - unloaded);
+      motion[k] = column.value(first);
+      unloaded += step * column.value({.displacement = unloaded, .direction = first.direction});
+    }
+    std::ranges::transform(measured, moved_->records[r].displacement.begin(),
+                           [&](double displacement) { return displacement + step * motion[k++]; });
+  }
+  Problem problem = problem_;
+  problem.data = &*moved_;
+  evaluate(problem, theta, motion);
+  for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = (motion[i] - unmoved_[i]) / step;
 }
 
 }  // namespace
@@ -197,8 +236,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
                                      const Thresholds& thresholds, Response& response,
                                      std::size_t most) {
   const ScaledRecords& data = *problem.data;
-  const std::vector<RecordPlaces> places =
-      PlacesOf(problem, theta, thresholds.held_readings, response);
+  ColumnMaker maker(problem, theta, thresholds, response);
   std::vector<std::size_t> covariates = NewCovariates(problem, thresholds.own_covariate);
   std::size_t room = 0;
   for (const Departure& departure : kDepartures) room += departure.columns.size();
@@ -220,7 +258,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     for (const DepartureColumn& column : departure.ColumnsOf(data.excitation)) {
       if (column.value == nullptr) continue;
       const Eigen::Index place = count + std::ssize(term.places);
-      Fill(column, data, places, column_at(place));
+      maker.Fill(column, column_at(place));
       if (!result.columns.col(place).isZero(0.0)) term.places.push_back(place);
     }
     count += std::ssize(term.places);
@@ -233,13 +271,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   const auto& covariate = *std::ranges::find(kDepartures, "covariate", &Departure::group);
   covariates.resize(taken);
   for (const std::size_t c : covariates) {
-    const std::span<double> values = column_at(count);
-    std::size_t i = 0;
-    for (const ScaledRecord& record : data.records) {
-      for (std::size_t k = 0; k < record.size(); ++k, ++i) {
-        values[i] = record.root_weight[k] * record.covariates[c][k];
-      }
-    }
+    maker.FillWithCovariate(c, column_at(count));
     result.terms.push_back({.departure = &covariate, .covariate = c, .places = {count++}});
   }
   result.columns.conservativeResize(Eigen::NoChange, count);

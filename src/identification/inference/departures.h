@@ -16,7 +16,7 @@ namespace mindahl::identification {
 /// A column of an omitted term, of the response.
 struct DepartureColumn {
   double (*value)(const Place&) = nullptr;
-  bool is_along_branch = false;  // the value is what changes since the branch started
+  bool is_motion = false;  // the value moves the contact, which responds with its memory
 };
 
 /// A way in which a record may depart from the model, to first order: a response in proportion to

@@ -1,14 +1,11 @@
 #include "identification/inference/places.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 
 #include "mindahl/models/friction_model.h"
-#include "models/normalized_response.h"
 
 namespace mindahl::identification {
 namespace {
@@ -143,145 +140,55 @@ void SetMissedWay(const ScaledRecord& record, const Sampling& sampling, std::spa
   }
 }
 
-/// Sets what a place has of a branch that starts at `origin`.
-void PutOn(const models::LoadingPath& path, std::size_t b, const Place& origin,
-           const models::FrictionModel& model, Place& at) {
-  const models::Branch& branch = path.branches[b];
-  at.virgin = models::IsVirgin(branch.start);
-  at.direction = at.virgin ? std::copysign(1.0, at.imposed - branch.origin)
-                           : static_cast<double>(branch.direction);
-  at.sets_out = at.virgin && at.direction * branch.direction > 0;
-  const models::BranchScale scale = model.scale(at.direction * origin.carried, at.virgin);
-  at.span = scale.span;
-  at.reach = scale.span * scale.remaining;
-  at.origin = branch.origin;
-  at.origin_carried = origin.carried;
-}
-
-/// Puts samples and origins on their branches.
-void FollowBranches(const models::FrictionModel& model, RecordPlaces& record) {
-  const models::LoadingPath& path = *record.path;
-  const auto put_on = [&](std::int32_t branch, Place& at) {
-    const auto b = static_cast<std::size_t>(branch);
-    PutOn(path, b, record.origins[b], model, at);
-    at.reach *= models::VirginLimit(path, path.branches[b]);
-  };
-  for (std::size_t b = 0; b < path.branches.size(); ++b) {
-    if (path.branches[b].parent >= 0) put_on(path.branches[b].parent, record.origins[b]);
+/// Sets how far the response has come in its stroke, and by how much it changes there.
+void SetProgress(const ScaledRecord& record, std::span<const double> response,
+                 std::span<Place> places) {
+  for (const Stroke& stroke : StrokesOf(record.excitation(), record.reversals)) {
+    const double change = response[stroke.end] - response[stroke.begin];
+    for (std::size_t i = stroke.begin == 0 ? 0 : stroke.begin + 1; i <= stroke.end; ++i) {
+      const double way = response[i] - response[stroke.begin];
+      places[i].direction = stroke.direction;
+      places[i].change = change;
+      places[i].progress = change != 0 ? std::clamp(way / change, 0.0, 1.0) : 0.0;
+    }
   }
-  for (const models::BranchRun& run : path.runs) {
-    for (std::size_t i = run.begin; i < run.end; ++i) put_on(run.branch, record.samples[i]);
-  }
-}
-
-/// The upper extreme of the steady loop, on the branch from the lower one.
-Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledRecord& record) {
-  const std::span<const double> displacement = record.displacement;
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
-  const std::array<double, 2> stroke = {lowest, highest};
-  const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
-  const models::LoadingPath path = models::MakeLoadingPath(
-      stroke, {}, problem.model->memory,
-      {.state = models::InitialState::kSteady,
-       .asymmetry = is_masing ? problem.parameters.AsymmetryAt(point.theta) : 0.0});
-  const models::NormalizedLaw law = LawUnder(problem, point, record);
-  models::NormalizedResponse response;
-  std::array<double, 2> t{};
-  response.Evaluate(*problem.model, law, path, stroke, t);
-  models::OriginSensitivity sensitivity;
-  response.DifferentiateByOrigins(*problem.model, law, path, stroke, sensitivity);
-  Place at{.displacement = highest,
-           .imposed = highest,
-           .carried = t[1],
-           .slope = sensitivity.sample_slope[1],
-           .gain = sensitivity.sample_gain[1]};
-  PutOn(path, static_cast<std::size_t>(path.runs.back().branch), {.carried = t[0]}, *problem.model,
-        at);
-  return at;
 }
 
 /// Places under an imposed force, which a column of displacements adds to as it goes.
-std::vector<RecordPlaces> PlacesUnderForce(const Problem& problem, std::span<const double> theta,
-                                           Response& response,
-                                           std::span<const Sampling> samplings) {
+std::vector<Place> PlacesUnderForce(const Problem& problem, std::span<const double> theta,
+                                    Response& response, std::span<const Sampling> samplings) {
   const ScaledRecords& data = *problem.data;
   std::vector<double> displacement(problem.size());
   response.Bind(problem);
   response.Evaluate(PointAt(problem, theta), displacement);
-  const double slip_force = std::exp(theta[kSlipForce]);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (double& value : displacement) value *= scale;
-  std::vector<RecordPlaces> places(data.records.size());
+  std::vector<Place> places(problem.size());
   std::size_t begin = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    RecordPlaces& of = places[r];
-    of.path = &response.PathOf(r, theta);
-    of.starts_at_zero = true;
-    const double unloaded = models::UnloadedAt(*of.path);
     const std::span<const double> own = std::span(displacement).subspan(begin, record.size());
+    const std::span<Place> of = std::span(places).subspan(begin, record.size());
     const std::vector<double> rate = Derive(own, samplings[r], true);
-    of.samples.reserve(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      of.samples.push_back({.displacement = own[i],
-                            .time = samplings[r].time[i],
-                            .rate = rate[i],
-                            .force = record.force[i],
-                            .imposed = record.force[i],
-                            .carried = (record.force[i] - unloaded) / slip_force});
+      of[i] = {.displacement = own[i],
+               .time = samplings[r].time[i],
+               .rate = rate[i],
+               .force = record.force[i]};
     }
-    for (const models::Branch& branch : of.path->branches) {
-      of.origins.push_back(
-          {.imposed = branch.origin, .carried = (branch.origin - unloaded) / slip_force});
-    }
-    FollowBranches(*problem.model, of);
+    SetProgress(record, own, of);
     begin += record.size();
   }
   return places;
 }
 
-/// Returns what is added to a column where branches start, from what it is on the first of them.
-std::vector<double> StartsOf(double (*value)(const Place&), const RecordPlaces& record,
-                             double first) {
-  std::vector<double> start(record.origins.size(), first);
-  for (std::size_t b = 0; b < record.origins.size(); ++b) {
-    const std::int32_t parent = record.path->branches[b].parent;
-    if (parent < 0) continue;
-    start[b] =
-        record.origins[b].gain * start[static_cast<std::size_t>(parent)] + value(record.origins[b]);
-  }
-  return start;
-}
-
-/// On the first branch: nothing where the contact was unloaded; a steady loop stays symmetric.
-double FirstStart(double (*value)(const Place&), const RecordPlaces& record) {
-  if (record.starts_at_zero) return 0.0;
-  const models::Branch& first = record.path->branches.front();
-  switch (first.start) {
-    case models::BranchStart::kSteadyCentre: {
-      const std::vector<double> start = StartsOf(value, record, 0.0);
-      return -(start[1] + start[2]) / 2;
-    }
-    case models::BranchStart::kSteadyExtreme:
-      return -first.direction * value(record.extreme) / (1 + record.extreme.gain);
-    default:
-      return 0.0;
-  }
-}
-
 }  // namespace
 
-double Place::Mobilised() const {
-  if (!(reach > 0)) return 1.0;
-  return std::clamp(std::abs(carried - origin_carried) / reach, 0.0, 1.0);
-}
-
-std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const double> theta,
-                                   double held_readings, Response& response) {
+std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
+                            double held_readings, Response& response) {
   const ScaledRecords& data = *problem.data;
   const std::vector<Sampling> samplings = SamplingsOf(data);
   if (data.is_forced()) return PlacesUnderForce(problem, theta, response, samplings);
-  const LawPoint point = PointAt(problem, theta);
   const bool tells_asymmetry = AnyIsVirgin(problem.states) &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies;
@@ -291,72 +198,40 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
   ResponseColumns wanted;
   wanted[TermId::kAsymmetry] = by_asymmetry;
   response.Bind(problem);
-  response.Differentiate(point, force, wanted);
+  response.Differentiate(PointAt(problem, theta), force, wanted);
   Predict(problem, theta, response, complete);
   double peak = 0.0;
   for (const double value : force) peak = std::max(peak, std::abs(value));
   const bool is_held = IsDisplacementHeld(data, samplings, held_readings);
-  std::vector<RecordPlaces> places(data.records.size());
+  std::vector<Place> places(problem.size());
   std::size_t begin = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const Sampling& sampling = samplings[r];
     const std::span<const double> whole = std::span(complete).subspan(begin, record.size());
+    const std::span<const double> of_contact = std::span(force).subspan(begin, record.size());
+    const std::span<Place> of = std::span(places).subspan(begin, record.size());
     const std::vector<double> velocity = Derive(record.displacement, sampling, false);
     const std::vector<double> acceleration = DeriveTwice(record.displacement, sampling);
     const std::vector<double> rate = Derive(whole, sampling, true);
     const std::vector<double> curvature = DeriveTwice(whole, sampling);
-    models::OriginSensitivity sensitivity;
-    response.DifferentiateByOrigins(point, r, sensitivity);
-    RecordPlaces& of = places[r];
-    of.samples.reserve(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      const double load = record.LoadAt(i);
-      const double of_contact = force[begin + i];
-      of.samples.push_back({.displacement = record.displacement[i],
-                            .time = sampling.time[i],
-                            .velocity = velocity[i],
-                            .acceleration = acceleration[i],
-                            .rate = rate[i],
-                            .curvature = curvature[i],
-                            .force = of_contact,
-                            .peak = peak,
-                            .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
-                            .asymmetry = tells_asymmetry ? by_asymmetry[begin + i] : 0.0,
-                            .imposed = record.displacement[i],
-                            .carried = load != 0 ? of_contact / load : 0.0,
-                            .slope = sensitivity.sample_slope[i],
-                            .gain = sensitivity.sample_gain[i]});
+      of[i] = {.displacement = record.displacement[i],
+               .time = sampling.time[i],
+               .velocity = velocity[i],
+               .acceleration = acceleration[i],
+               .rate = rate[i],
+               .curvature = curvature[i],
+               .force = of_contact[i],
+               .peak = peak,
+               .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
+               .asymmetry = tells_asymmetry ? by_asymmetry[begin + i] : 0.0};
     }
-    if (is_held) SetMissedWay(record, sampling, of.samples);
-    of.path = &response.PathOf(r, theta);
-    for (std::size_t b = 0; b < of.path->branches.size(); ++b) {
-      const models::Branch& branch = of.path->branches[b];
-      const bool is_unloaded = branch.start == models::BranchStart::kUnloaded;
-      of.origins.push_back({.displacement = branch.origin,
-                            .imposed = branch.origin,
-                            .carried = is_unloaded ? 0.0 : sensitivity.origin_force[b],
-                            .slope = sensitivity.slope[b],
-                            .gain = sensitivity.gain[b]});
-    }
-    FollowBranches(*problem.model, of);
-    if (problem.states[r] == models::InitialState::kSteady) {
-      of.extreme = SteadyExtreme(problem, point, record);
-    }
+    SetProgress(record, of_contact, of);
+    if (is_held) SetMissedWay(record, sampling, of);
     begin += record.size();
   }
   return places;
-}
-
-void FillAlongBranches(double (*value)(const Place&), const RecordPlaces& record,
-                       std::span<double> column) {
-  const std::vector<double> start = StartsOf(value, record, FirstStart(value, record));
-  for (const models::BranchRun& run : record.path->runs) {
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      column[i] = record.samples[i].gain * start[static_cast<std::size_t>(run.branch)] +
-                  value(record.samples[i]);
-    }
-  }
 }
 
 }  // namespace mindahl::identification
