@@ -168,8 +168,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     if (!problem.data->is_forced()) Append(result.findings, FindForceAtLimit(attempt.prepared));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
-  if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
-  Append(result.findings, FindContradictedNoise(result, options));
   if (attempt.without_priors != nullptr) {
     Append(result.findings, FindContradictedPrior(*attempt.without_priors, result, options));
   }

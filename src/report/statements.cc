@@ -135,7 +135,6 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"slip_force_bounded_below",
      "the force does not level off: raise the amplitude until it does (mindahl plan says how far)"},
     {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
-    {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
      "the force reads {limit:force} in {share%} of the samples, to the last digit: the sensor is "
@@ -152,9 +151,6 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "the rig, and give --rig-stiffness"},
     {"initial_state_undecided",
      "the other initial state fits as well, with Tc {slip_force:force}: give --initial-state"},
-    {"noise_contradicted",
-     "the residuals, {rms:force}, are far less than the noise of {given:force} that was given: "
-     "look at its unit"},
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses

@@ -70,14 +70,6 @@ TEST(EdgeRecords, CoarseStepsOfTheForceAreInTheIntervals) {
   }
 }
 
-TEST(EdgeRecords, ANoiseThatTheResidualsBelieIsSaid) {
-  for (const double noise : {0.1, 0.01}) {
-    const FitResult fit =
-        FitOne(testing::NoisyLoop(1), {.force_noise = noise * testing::kLaw.slip_force});
-    EXPECT_EQ(fit.FindFinding("noise_contradicted") != nullptr, noise == 0.1);
-  }
-}
-
 TEST(EdgeRecords, AsManySamplesAsFreeParameters) {
   // σ, α and Tc: at the file's zeros the contact is unloaded.
   const Record record = MakeRecord({0.0, 0.0002828427124746, 0.0004}, {0, 20, 20});

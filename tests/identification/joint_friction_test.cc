@@ -56,7 +56,6 @@ TEST(JointFriction, IsRecoveredUnderATorqueThatChangesItsSign) {
       EXPECT_NEAR(fit.Find("asymmetry")->value, asymmetry, kExact);
       EXPECT_EQ(fit.Find("asymmetry")->identifiability, Identifiability::kIdentifiable);
       EXPECT_NE(fit.FindFinding("load_followed"), nullptr);
-      EXPECT_EQ(fit.FindFinding("alpha_limited_by_load"), nullptr);
     }
   }
 }

@@ -171,17 +171,6 @@ std::optional<Finding> FindContradictedPrior(const FitResult& without, const Fit
   return finding;
 }
 
-std::optional<Finding> FindContradictedNoise(const FitResult& result, const FitOptions& options) {
-  constexpr double kFarLess = 3.0;
-  constexpr double kEnough = 10.0;  // degrees of freedom
-  if (!options.force_noise || result.residuals.degrees_of_freedom < kEnough ||
-      kFarLess * result.rms > *options.force_noise) {
-    return std::nullopt;
-  }
-  return Finding{.code = "noise_contradicted",
-                 .numbers = {{"rms", result.rms}, {"given", *options.force_noise}}};
-}
-
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   struct Row {
     std::string_view name;
@@ -292,47 +281,23 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
   return std::nullopt;
 }
 
-std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution) {
-  const Parameter& shape = problem.parameters[kShape];
-  const bool is_limited = problem.data->load_varies && !shape.fixed &&
-                          shape.upper == kHighestShapeUnderLoad &&
-                          solution.side[kShape] == BoundSide::kUpper;
-  if (!is_limited) return std::nullopt;
-  return Finding{.code = "alpha_limited_by_load",
-                 .parameters = {"alpha"},
-                 .numbers = {{"bound", kHighestShapeUnderLoad}}};
-}
-
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  if (asymmetry == nullptr || result.initial_state == models::InitialState::kVirgin ||
-      result.model->memory == models::Memory::kNone) {
-    return std::nullopt;
-  }
-  const bool is_known = asymmetry->status == ParameterStatus::kFixed;
-  if (is_known && asymmetry->value == 0) return std::nullopt;
-  Finding finding{.code = "asymmetry_not_identifiable"};
-  double most = 0.0;
+  const bool is_asked = asymmetry != nullptr && asymmetry->status != ParameterStatus::kFixed &&
+                        result.initial_state == models::InitialState::kSteady &&
+                        result.model->memory != models::Memory::kNone;
+  if (!is_asked) return std::nullopt;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
-    const std::string offset =
-        result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1);
-    const ParameterEstimate* zero = result.Find(offset);
-    const bool zero_is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
-    // A known zero determines A, and a known A the offset: each of its own record.
-    if (zero_is_known == is_known) continue;
-    const RecordFit& record = result.records[r];
-    const models::BranchLaw law = result.LawOf(record);
-    const double amplitude = ContactAmplitude(result, law, record.measures.amplitude);
-    const double never_slips =
-        1 - models::SteadyPeakForce(*result.model, law, amplitude) / law.slip_force;
-    if (never_slips <= thresholds.never_slips) continue;
-    most = std::max(most, never_slips);
-    if (is_known) finding.parameters.push_back(offset);
+    const ParameterEstimate* zero = result.Find(
+        result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1));
+    const bool is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
+    const models::BranchLaw law = result.LawOf(result.records[r]);
+    const double amplitude = ContactAmplitude(result, law, result.records[r].measures.amplitude);
+    const double peak_force = models::SteadyPeakForce(*result.model, law, amplitude);
+    if (!is_known || peak_force >= (1 - thresholds.never_slips) * law.slip_force) continue;
+    return Finding{.code = "asymmetry_not_identifiable", .parameters = {"asymmetry"}};
   }
-  if (most == 0) return std::nullopt;
-  if (!is_known) finding.parameters.emplace_back("asymmetry");
-  finding.numbers = {{"never_slips", most}};
-  return finding;
+  return std::nullopt;
 }
 
 std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {

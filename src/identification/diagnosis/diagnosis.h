@@ -44,10 +44,6 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitResult& result,
                                              const FitOptions& options);
 
-/// `noise_contradicted`: a noise of the force that was given, and of which the residuals are less
-/// than a third.
-std::optional<Finding> FindContradictedNoise(const FitResult& result, const FitOptions& options);
-
 /// Closed intervals too wide to call a parameter known, of those that no other finding calls
 /// unknown.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
@@ -58,8 +54,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
                                        const Thresholds& thresholds);
 
 /// `asymmetry_not_identifiable`: of a contact that had been cycled before the records, and does not
-/// slip as a whole in every one of those whose force has a known zero; of an asymmetry that is
-/// held, the offsets of the records in which it does not.
+/// slip as a whole in every one of those whose force has a known zero.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
 /// `force_at_limit`: a force that stands at its largest or least reading, to the last digit, in a
@@ -80,9 +75,6 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
 /// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
 std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds);
-
-/// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
-std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);
 
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
