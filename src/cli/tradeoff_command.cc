@@ -140,15 +140,12 @@ std::string PointsCsv(const std::vector<MeasuredExcitation>& scenes) {
 io::Plot ToPlot(const std::vector<MeasuredExcitation>& scenes) {
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
   io::Plot plot{.title = "Work and precision: largest force error against cost"};
-  plot.height = 60 + 460 * static_cast<int>(scenes.size());
   for (const MeasuredExcitation& scene : scenes) {
     io::PlotPanel panel{.x_label = "cost [ns/sample]",
                         .y_label = "largest error of T over T*",
                         .log_x = true,
                         .log_y = true,
                         .title = scene.title};
-    // One legend serves all panels: their curves are the same.
-    const bool has_legend = &scene == &scenes.front();
     std::vector<std::string> labels;
     const Json& points = scene.document["points"];
     for (const Json& point : points) {
@@ -158,7 +155,7 @@ io::Plot ToPlot(const std::vector<MeasuredExcitation>& scenes) {
       if (place == labels.size()) {
         labels.push_back(label);
         panel.series.push_back(
-            {.label = has_legend ? label : "",
+            {.label = label,
              .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints});
       }
       panel.series[place].x.push_back(point["cost_ns_per_sample"]);

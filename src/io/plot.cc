@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/locale/encoding_utf.hpp>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -20,107 +23,260 @@
 namespace mindahl::io {
 namespace {
 
-// On white. Colours differ in lightness, so that they
-// are distinct in grey and for colour-blind readers too; shades go from early, dark, to late.
+// On white. Colours differ in lightness, so that they are distinct in grey and for colour-blind
+// readers too; shades go from early, dark, to late.
 constexpr std::string_view kStyle =
     "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
     ".grid,.axis,.mark,.line,.dots{fill:none}.grid{stroke:#e4e4e4}"
     ".axis{stroke:#444;stroke-width:1.2}.mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
+    ".line,.dots,.marker{stroke:currentColor}"
     ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
     ".dots{stroke-width:3.2;stroke-linecap:round}.marker{fill:#fff;stroke-width:1.8}"
-    ".area{fill-opacity:.22}.line.more{stroke-dasharray:10 5}";
-constexpr std::array<std::string_view, 6> kColours = {"#c2334a", "#2f6ea5", "#3a9d6e",
-                                                      "#8d6bb1", "#e09f3e", "#5f6b76"};
-constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
-                                                     "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
+    ".area,.marker.more{fill:currentColor}.area{fill-opacity:.22}.line.more{stroke-dasharray:10 5}"
+    ".s0{color:#c2334a}.s1{color:#2f6ea5}.s2{color:#3a9d6e}"
+    ".s3{color:#8d6bb1}.s4{color:#e09f3e}.s5{color:#5f6b76}"
+    ".h0{color:#440154}.h1{color:#46327e}.h2{color:#365c8d}.h3{color:#277f8e}"
+    ".h4{color:#1fa187}.h5{color:#4ac16d}.h6{color:#8fb52d}.h7{color:#c2a50a}";
+constexpr double kCharacter = 9.6;  // [px] on a narrow screen, where letters are larger
+constexpr double kRow = 20;         // [px] of a title or a legend
+constexpr double kEdge = 8;         // [px]
 
-/// The rules of style of a drawing by itself.
-std::string Style() {
-  std::string style(kStyle);
-  const auto add = [&](char kind, std::span<const std::string_view> colours) {
-    for (std::size_t k = 0; k < colours.size(); ++k) {
-      style += fmt::format(
-          ".{0}{1}.line,.{0}{1}.dots,.{0}{1}.marker{{stroke:{2}}}"
-          ".{0}{1}.area,.{0}{1}.more.marker{{fill:{2}}}",
-          kind, k, colours[k]);
-    }
-  };
-  add('s', kColours);
-  add('h', kShades);
-  return style;
+using Values = std::vector<double>;
+
+double WidthOf(std::string_view text) {
+  return kCharacter * static_cast<double>(CharactersIn(text));
 }
 
-/// Returns the legend of a panel in rows.
-/// @param height  written: [px]
-std::string LegendRows(const PlotPanel& panel, double room, double& height) {
-  constexpr double kSymbol = 34;      // [px]
-  constexpr double kCharacter = 7.5;  // as wide as most fonts draw it
-  constexpr double kBetween = 14;
-  constexpr double kRow = 20;
-  std::string rows;
-  height = 0.0;
-  double x = 0.0;
-  for (const auto& [symbol, label] : LegendOf(panel)) {
-    const double width = kSymbol + kCharacter * static_cast<double>(CharactersIn(label)) + kBetween;
-    if (height == 0 || (x > kSymbol && x + width > room)) {
-      x = kSymbol;
-      height += kRow;
-    }
-    rows += fmt::format(
-        "<g transform=\"translate({:.1f},{:.1f})\">{}<text x=\"{}\" y=\"11\">{}</text></g>\n", x,
-        height - kRow, symbol, kSymbol, HtmlText(label));
-    x += width;
+std::string Text(double x, double y, std::string_view anchor, std::string_view text) {
+  return fmt::format("<text x=\"{:.4g}\" y=\"{:.4g}\" text-anchor=\"{}\">{}</text>", x, y, anchor,
+                     HtmlText(text));
+}
+
+std::string Path(std::string_view css_class, std::string_view path) {
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>", css_class, path);
+}
+
+std::string Group(double x, double y, std::string_view elements) {
+  return fmt::format("<g transform=\"translate({:.1f},{:.1f})\">{}</g>\n", x, y, elements);
+}
+
+/// Returns the label of a tic, "0.5" or "2·10⁻⁷".
+std::string TicLabel(double value) {
+  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
+                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
+  if (value < 0) return "−" + TicLabel(-value);
+  if (value == 0 || (value > 1.5e-3 && value < 9e4)) return fmt::format("{:.6g}", value);
+  const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
+  const std::string factor = fmt::format("{:.4g}", value / std::pow(10.0, power));
+  std::string text = factor == "1" ? "10" : factor + "·10";
+  for (const char character : std::to_string(power)) {
+    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
   }
-  return rows;
+  return text;
+}
+
+/// One axis: data to pixels, and where its tics are.
+class Axis {
+ public:
+  double from_pixel = 0.0, to_pixel = 0.0;
+  Values tics = {};
+
+  /// @param margin  on either side of the data, a fraction of their span
+  Axis(const Values& data, double margin, bool is_logarithmic) : is_logarithmic_(is_logarithmic) {
+    from_ = At(std::ranges::min(data));
+    to_ = At(std::ranges::max(data));
+    double span = to_ - from_;
+    // A constant has an axis too: a fraction of it to either side, far above what rounding leaves.
+    const double size = std::max(std::abs(from_), std::abs(to_));
+    if (!(span > 1e-9 * size)) {
+      span = is_logarithmic ? 0.3 : size > 0 ? 0.2 * size : 1.0;
+      from_ -= span / 2;
+      to_ += span / 2;
+    }
+    from_ -= margin * span;
+    to_ += margin * span;
+    is_logarithmic ? PlaceTicsOfPowers() : PlaceTics();
+  }
+
+  [[nodiscard]] double Pixel(double value) const {
+    return from_pixel + (At(value) - from_) / (to_ - from_) * (to_pixel - from_pixel);
+  }
+
+ private:
+  [[nodiscard]] double At(double value) const {
+    return is_logarithmic_ ? std::log10(value) : value;
+  }
+
+  void PlaceTics() {
+    constexpr double kTics = 5.5;
+    constexpr double kShortest = 0.75;  // of the distance between that many
+    const double rough = (to_ - from_) / kTics;
+    const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    double step = 10 * power;
+    for (const double multiple : {5.0, 2.0, 1.0}) {
+      if (multiple * power >= kShortest * rough) step = multiple * power;
+    }
+    for (double k = std::ceil(from_ / step); k * step <= to_; ++k) tics.push_back(k * step);
+  }
+
+  void PlaceTicsOfPowers() {
+    constexpr std::array kMultiples = {1, 2, 5, 3, 4, 6, 7, 8, 9};
+    const double span = to_ - from_;
+    const double step = std::ceil(span / 8);
+    const std::size_t multiples = span > 2.5 ? 1 : span > 0.8 ? 3 : kMultiples.size();
+    for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
+      for (const int multiple : std::span(kMultiples).first(multiples)) {
+        const double at = power + std::log10(multiple);
+        if (at >= from_ && at <= to_) tics.push_back(multiple * std::pow(10.0, power));
+      }
+    }
+    std::ranges::sort(tics);
+  }
+
+  bool is_logarithmic_;
+  double from_, to_;
+};
+
+/// Returns the coordinates on the vertical axis, with the ends of a band.
+std::vector<Values PlotSeries::*> HeightsOf(const PlotSeries& series) {
+  if (series.style != PlotStyle::kBand) return {&PlotSeries::y};
+  return {&PlotSeries::y, &PlotSeries::lower, &PlotSeries::upper};
+}
+
+/// Appends coordinates, which must be such as can be drawn, to those of their axis.
+void Append(const PlotSeries& series, char axis, const Values& values, bool is_logarithmic,
+            Values& all) {
+  const std::string what = fmt::format("{} of '{}'", axis, series.label);
+  RequireSameSize("x of '" + series.label + "'", series.x.size(), what, values.size());
+  if (values.empty()) throw InvalidArgument(what + " has no points: must have one");
+  for (const double value : values) {
+    is_logarithmic ? RequirePositive(what, value) : RequireFinite(what, value);
+  }
+  all.insert(all.end(), values.begin(), values.end());
+}
+
+/// Returns the points to draw, in order: of runs of consecutive points those with the least and
+/// greatest coordinates; all, where there are at most `most`.
+std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
+  const std::size_t size = series.x.size();
+  std::vector<Values PlotSeries::*> coordinates = HeightsOf(series);
+  coordinates.push_back(&PlotSeries::x);
+  const std::size_t runs = size <= most ? size : most / (2 * coordinates.size());
+  std::set<std::size_t> kept;
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (const auto member : coordinates) {
+      const double* const values = (series.*member).data();
+      const auto [least, greatest] =
+          std::minmax_element(values + run * size / runs, values + (run + 1) * size / runs);
+      kept.insert(
+          {static_cast<std::size_t>(least - values), static_cast<std::size_t>(greatest - values)});
+    }
+  }
+  return kept;
+}
+
+/// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
+/// one before.
+std::string Points(const Values& x, const Values& y, std::string_view shape, char first = 'M') {
+  std::string path;
+  std::string last;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::string at = fmt::format("{:.4g} {:.4g}", x[k], y[k]);
+    if (at == last) continue;
+    path += path.empty() || !shape.empty() ? first : 'L';
+    path.append(at).append(shape);
+    last = at;
+  }
+  return path;
+}
+
+/// Draws a series whose coordinates are in pixels.
+std::string DrawSeries(const PlotSeries& series, const std::string& look) {
+  constexpr std::string_view kCircle = "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z";
+  const auto& [label, x, y, style, lower, upper, shade] = series;
+  const auto draw = [&](std::string_view kind, const std::string& path) {
+    return Path(fmt::format("{} {}", kind, look), path);
+  };
+  if (style == PlotStyle::kPoints) return draw("dots", Points(x, y, "h0"));
+  if (style == PlotStyle::kMarkers) return draw("marker", Points(x, y, kCircle));
+  // A path of one point draws nothing.
+  std::string line = draw("line", Points(x, y, "") + "h0");
+  if (style == PlotStyle::kLineAndPoints) return line + draw("marker", Points(x, y, kCircle));
+  if (style != PlotStyle::kBand) return line;
+  const std::string back = Points({x.rbegin(), x.rend()}, {lower.rbegin(), lower.rend()}, "", 'L');
+  return draw("area", Points(x, upper, "") + back + "Z") + line;
+}
+
+/// Returns the classes of a series: in these it differs from others, in colour, and beyond the
+/// first six in dashes or filled markers.
+std::string LookOf(const PlotSeries& series, int place) {
+  constexpr int kColours = 6;       // classes s0 … s5
+  constexpr double kLastShade = 7;  // classes h0 … h7
+  if (series.shade) {
+    return fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade));
+  }
+  return fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : "");
+}
+
+/// Draws axes, grid, labels and marks.
+std::string DrawAxes(const PlotPanel& panel, const Axis& x_axis, const Axis& y_axis) {
+  const double left = x_axis.from_pixel;
+  const double right = x_axis.to_pixel;
+  const double top = y_axis.to_pixel;
+  const double bottom = y_axis.from_pixel;
+  std::string grid;
+  std::string labels = Text(2, 14, "start", panel.title);
+  double last_end = 0;
+  for (const double tic : x_axis.tics) {
+    const std::string label = TicLabel(tic);
+    const double half = WidthOf(label) / 2;
+    const double at = x_axis.Pixel(tic);
+    grid += fmt::format("M{:.4g} {:.4g}V{:.4g}", at, top, bottom);
+    if (at - half < last_end) continue;
+    last_end = at + half;
+    labels += Text(at, bottom + 19, "middle", label);
+  }
+  for (const double tic : y_axis.tics) {
+    const double at = y_axis.Pixel(tic);
+    grid += fmt::format("M{:.4g} {:.4g}H{:.4g}", left, at, right);
+    labels += Text(left - 7, at + 5, "end", TicLabel(tic));
+  }
+  labels +=
+      Text(2, top - 13, "start", panel.y_label) + Text(right, bottom + 44, "end", panel.x_label);
+  // Labels of marks stand one under the other, in turn.
+  double line = top + 14;
+  for (const PlotMark& mark : panel.marks) {
+    const double at = x_axis.Pixel(mark.x);
+    const bool is_left = at + WidthOf(mark.label) > right;
+    labels += Path("mark", fmt::format("M{:.4g} {:.4g}V{:.4g}", at, top, bottom)) +
+              Text(at + (is_left ? -5 : 5), line, is_left ? "end" : "start", mark.label);
+    line = line > top + 3 * kRow ? top + 14 : line + kRow;
+  }
+  const std::string lines = fmt::format("M{:.4g} {:.4g}V{:.4g}H{:.4g}", left, top, bottom, right);
+  return Path("grid", grid) + Path("axis", lines) + labels;
 }
 
 std::string SvgOf(const Plot& plot) {
-  constexpr double kEdge = 8;  // [px]
-  constexpr double kHeading = 26;
+  constexpr double kWidth = 760;  // [px] of the axes with their labels
   constexpr std::size_t kMostPoints = 20'000;
-  if (plot.panels.empty()) throw InvalidArgument("number of panels = 0 is invalid: must be >= 1");
-  RequirePositive("plot width [px]", plot.width);
-  RequirePositive("plot height [px]", plot.height);
-  std::string svg = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-      "viewBox=\"0 0 {0} {1}\">\n<style>{2}</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      plot.width, plot.height, Style());
+  std::string elements;
   double top = kEdge;
   if (!plot.title.empty()) {
-    svg += fmt::format(
-        "<text x=\"{}\" y=\"26\" text-anchor=\"middle\" style=\"font-size:17px\">{}</text>\n",
-        plot.width / 2, HtmlText(plot.title));
-    top += kHeading + kEdge;
-  }
-  const double width = plot.width - kEdge;
-  double relative = 0.0;
-  double room = plot.height - top - kEdge;  // [px] for the axes of all panels
-  double legend_height = 0.0;
-  for (const PlotPanel& panel : plot.panels) {
-    LegendRows(panel, width, legend_height);
-    relative += panel.height;
-    room -= legend_height + kAboveAxes + kBelowAxes + (panel.title.empty() ? 0 : kHeading);
+    elements = fmt::format("<g style=\"font-weight:bold\">{}</g>",
+                           Text(kWidth / 2 + kEdge, top + 14, "middle", plot.title));
+    top += kRow + kEdge;
   }
   for (const PlotPanel& panel : plot.panels) {
-    // A page too small for its margins still has axes of a pixel.
-    const double axes = std::max(room * panel.height / relative, 1.0);
-    if (!panel.title.empty()) {
-      svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", kEdge, top + 0.7 * kHeading,
-                         HtmlText(panel.title));
-      top += kHeading;
-    }
-    const auto add = [&](const std::string& elements, double height) {
-      svg += fmt::format("<g transform=\"translate(4,{:.1f})\">{}</g>\n", top, elements);
-      top += height;
-    };
-    const std::string legend = LegendRows(panel, width, legend_height);
-    add(legend, legend_height);
-    add(DrawPanel(panel, width, axes, kMostPoints * std::max<std::size_t>(panel.series.size(), 1)),
-        kAboveAxes + axes + kBelowAxes);
+    const Drawing drawn = DrawPanel(panel, kWidth, kMostPoints * panel.series.size());
+    elements += Group(kEdge, top, drawn.elements);
+    top += drawn.height + kEdge;
   }
-  return svg + "</svg>\n";
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0} {1:.0f}\">\n<style>{2}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{3}</svg>\n",
+      kWidth + 2 * kEdge, top, kStyle, elements);
 }
 
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
@@ -148,6 +304,82 @@ bool IsPng(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points) {
+  constexpr double kAbove = 30;  // [px] above the axes, for the label of the vertical one
+  constexpr double kBelow = 52;
+  constexpr double kRight = 16;
+  constexpr double kLeft = 76;              // of labels of common length
+  constexpr double kSymbol = 34;            // of a legend
+  constexpr std::size_t kLeastPoints = 64;  // of each of many series
+  if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
+  Values all_x;
+  Values all_y;
+  for (const PlotSeries& series : panel.series) {
+    Append(series, 'x', series.x, panel.log_x, all_x);
+    for (const auto y : HeightsOf(series)) Append(series, 'y', series.*y, panel.log_y, all_y);
+  }
+  for (const PlotMark& mark : panel.marks) all_x.push_back(mark.x);
+  Axis x_axis(all_x, 0.02, panel.log_x);
+  Axis y_axis(all_y, 0.05, panel.log_y);
+  y_axis.to_pixel = kAbove + (panel.title.empty() ? 0 : kRow);
+  y_axis.from_pixel = y_axis.to_pixel + std::round(width / 2 * panel.height);
+  x_axis.to_pixel = width - kRight;
+  x_axis.from_pixel = kLeft;
+  for (const double tic : y_axis.tics) {
+    x_axis.from_pixel = std::max(x_axis.from_pixel, 14 + WidthOf(TicLabel(tic)));
+  }
+  Drawing drawing{.elements = DrawAxes(panel, x_axis, y_axis),
+                  .height = y_axis.from_pixel + kBelow};
+  // The legend is in rows below.
+  double entry = width;
+  int place = -1;  // of a series in the order of colours
+  for (const PlotSeries& series : panel.series) {
+    if (!series.shade && (place < 0 || !series.label.empty())) ++place;
+    const std::string look = LookOf(series, place);
+    PlotSeries pixels{.style = series.style};
+    const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
+    for (const std::size_t point : Thinned(series, most)) {
+      pixels.x.push_back(x_axis.Pixel(series.x[point]));
+      for (const auto y : HeightsOf(series)) {
+        (pixels.*y).push_back(y_axis.Pixel((series.*y)[point]));
+      }
+    }
+    drawing.elements += DrawSeries(pixels, look);
+    if (series.label.empty()) continue;
+    const double size = kSymbol + WidthOf(series.label);
+    if (entry + size > width) {
+      entry = 0;
+      drawing.height += kRow;
+    }
+    PlotSeries symbol{.x = {1, 25}, .y = {6, 6}, .style = series.style, .lower = {12, 12}};
+    if (series.style == PlotStyle::kMarkers) symbol.x = {13, 13};
+    symbol.upper = {0, 0};
+    drawing.elements += Group(entry, drawing.height - kRow,
+                              DrawSeries(symbol, look) + Text(kSymbol, 11, "start", series.label));
+    entry += size;
+  }
+  return drawing;
+}
+
+std::string HtmlText(std::string_view text) {
+  // The conversion omits bytes that are not valid UTF-8.
+  const std::string valid =
+      boost::locale::conv::utf_to_utf<char>(text.data(), text.data() + text.size());
+  std::string escaped;
+  for (const char& character : valid) {
+    const auto byte = static_cast<unsigned char>(character);
+    const bool is_blank = character == '\n' || character == '\t';
+    escaped += (byte < 0x20 && !is_blank) || byte == 0x7F ? "\uFFFD"
+               : character == '&'                         ? "&amp;"
+               : character == '<'                         ? "&lt;"
+               : character == '>'                         ? "&gt;"
+               : character == '"'                         ? "&quot;"
+               : character == '\''                        ? "&#39;"
+                                                          : std::string_view(&character, 1);
+  }
+  return escaped;
+}
 
 void RequirePlotName(const std::filesystem::path& path) { IsPng(path); }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstddef>
 #include <regex>
 
@@ -97,26 +96,18 @@ std::string TableHtml(std::string_view caption, const std::vector<std::string>& 
 
 std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel) {
   constexpr std::size_t kMostPoints = 6000;
-  const double axes = std::round(kWidth / 2.0 * panel.height);
-  std::string legend;
-  for (const auto& [symbol, label] : io::LegendOf(panel)) {
-    legend += fmt::format("<li><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">{}</svg>{}</li>",
-                          symbol, Prose(label));
-  }
-  return FigureHtml(said, legend, static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes),
-                    io::DrawPanel(panel, kWidth, axes, kMostPoints));
+  const io::Drawing drawing = io::DrawPanel(panel, kWidth, kMostPoints);
+  return FigureHtml(said, static_cast<int>(drawing.height), drawing.elements);
 }
 
-std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
-                       std::string_view elements) {
+std::string FigureHtml(const FigureText& said, int height, std::string_view elements) {
   return fmt::format(R"(<figure id="{0}">
 <{1} id="{0}-title"{2}>{3}</{1}>
 <p id="{0}-text"{2}>{4}</p>
-{5}<svg class="plot" viewBox="0 0 {6} {7}" role="img" aria-labelledby="{0}-title {0}-text">{8}</svg>
+<svg class="plot" viewBox="0 0 {5} {6}" role="img" aria-labelledby="{0}-title {0}-text">{7}</svg>
 </figure>
 )",
                      said.id, said.element, said.attributes, Prose(said.title), Prose(said.text),
-                     legend.empty() ? "" : fmt::format("<ul class=\"legend\">{}</ul>\n", legend),
                      kWidth, height, elements);
 }
 

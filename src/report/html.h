@@ -52,8 +52,7 @@ struct FigureText {
 /// Returns a figure of a panel, with its legend.
 std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel);
 /// Returns a figure of the elements of an inline SVG, 560 px wide.
-std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
-                       std::string_view elements);
+std::string FigureHtml(const FigureText& said, int height, std::string_view elements);
 /// Returns figures, or tables, side by side where there is room; "" without any.
 std::string SideBySide(std::string_view parts);
 

@@ -170,7 +170,7 @@ std::string IntervalsHtml(const Report& report) {
       {.id = "intervals",
        .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
        .text = "Green may be quoted; amber only with its interval."},
-      "", std::max(middle - 31, kLeast), svg);
+      std::max(middle - 31, kLeast), svg);
 }
 
 }  // namespace

