@@ -306,14 +306,17 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   constexpr double kManyCycles = 100;
   const std::span<const Course::Bin> bins = evolution.course.bins();
   io::PlotPanel panel{.log_x = bins.back().cycle >= kManyCycles * bins.front().cycle};
-  io::PlotSeries course{.label = "", .style = io::PlotStyle::kBand, .shade = kShade};
+  io::PlotSeries course{.shade = kShade};
+  io::PlotSeries range{.style = io::PlotStyle::kArea, .shade = kShade};  // up there, down back
   for (const Course::Bin& bin : bins) {
     course.x.push_back(bin.cycle);
     course.y.push_back(bin.value);
-    course.lower.push_back(bin.least);
-    course.upper.push_back(bin.greatest);
+    range.y.push_back(bin.greatest);
   }
-  panel.series.push_back(std::move(course));
+  range.x = course.x;
+  range.x.insert(range.x.end(), course.x.rbegin(), course.x.rend());
+  for (std::size_t k = bins.size(); k-- > 0;) range.y.push_back(bins[k].least);
+  panel.series = {std::move(range), std::move(course)};
   report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
   for (const Change& step : evolution.description.changes) {
     if (!step.is_step()) continue;

@@ -154,9 +154,7 @@ io::Plot ToPlot(const std::vector<MeasuredExcitation>& scenes) {
       auto place = static_cast<std::size_t>(std::ranges::find(labels, label) - labels.begin());
       if (place == labels.size()) {
         labels.push_back(label);
-        panel.series.push_back(
-            {.label = label,
-             .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints});
+        panel.series.push_back({.label = label, .style = io::PlotStyle::kLineAndPoints});
       }
       panel.series[place].x.push_back(point["cost_ns_per_sample"]);
       panel.series[place].y.push_back(std::max(point["max_force_error"].get<double>(), kRounding));

@@ -137,12 +137,6 @@ class Axis {
   double from_, to_;
 };
 
-/// Returns the coordinates on the vertical axis, with the ends of a band.
-std::vector<Values PlotSeries::*> HeightsOf(const PlotSeries& series) {
-  if (series.style != PlotStyle::kBand) return {&PlotSeries::y};
-  return {&PlotSeries::y, &PlotSeries::lower, &PlotSeries::upper};
-}
-
 /// Appends coordinates, which must be such as can be drawn, to those of their axis.
 void Append(const PlotSeries& series, char axis, const Values& values, bool is_logarithmic,
             Values& all) {
@@ -159,17 +153,14 @@ void Append(const PlotSeries& series, char axis, const Values& values, bool is_l
 /// greatest coordinates; all, where there are at most `most`.
 std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   const std::size_t size = series.x.size();
-  std::vector<Values PlotSeries::*> coordinates = HeightsOf(series);
-  coordinates.push_back(&PlotSeries::x);
-  const std::size_t runs = size <= most ? size : most / (2 * coordinates.size());
+  const std::size_t runs = size <= most ? size : most / 4;
   std::set<std::size_t> kept;
   for (std::size_t run = 0; run < runs; ++run) {
-    for (const auto member : coordinates) {
-      const double* const values = (series.*member).data();
+    for (const double* const values : {series.x.data(), series.y.data()}) {
       const auto [least, greatest] =
           std::minmax_element(values + run * size / runs, values + (run + 1) * size / runs);
-      kept.insert(
-          {static_cast<std::size_t>(least - values), static_cast<std::size_t>(greatest - values)});
+      kept.insert(static_cast<std::size_t>(least - values));
+      kept.insert(static_cast<std::size_t>(greatest - values));
     }
   }
   return kept;
@@ -177,13 +168,13 @@ std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
 
 /// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
 /// one before.
-std::string Points(const Values& x, const Values& y, std::string_view shape, char first = 'M') {
+std::string Points(const Values& x, const Values& y, std::string_view shape) {
   std::string path;
   std::string last;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const std::string at = fmt::format("{:.4g} {:.4g}", x[k], y[k]);
     if (at == last) continue;
-    path += path.empty() || !shape.empty() ? first : 'L';
+    path += path.empty() || !shape.empty() ? 'M' : 'L';
     path.append(at).append(shape);
     last = at;
   }
@@ -191,20 +182,16 @@ std::string Points(const Values& x, const Values& y, std::string_view shape, cha
 }
 
 /// Draws a series whose coordinates are in pixels.
-std::string DrawSeries(const PlotSeries& series, const std::string& look) {
-  constexpr std::string_view kCircle = "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z";
-  const auto& [label, x, y, style, lower, upper, shade] = series;
+std::string DrawSeries(const Values& x, const Values& y, PlotStyle style, std::string_view look) {
   const auto draw = [&](std::string_view kind, const std::string& path) {
     return Path(fmt::format("{} {}", kind, look), path);
   };
   if (style == PlotStyle::kPoints) return draw("dots", Points(x, y, "h0"));
-  if (style == PlotStyle::kMarkers) return draw("marker", Points(x, y, kCircle));
+  if (style == PlotStyle::kArea) return draw("area", Points(x, y, "") + "Z");
   // A path of one point draws nothing.
   std::string line = draw("line", Points(x, y, "") + "h0");
-  if (style == PlotStyle::kLineAndPoints) return line + draw("marker", Points(x, y, kCircle));
-  if (style != PlotStyle::kBand) return line;
-  const std::string back = Points({x.rbegin(), x.rend()}, {lower.rbegin(), lower.rend()}, "", 'L');
-  return draw("area", Points(x, upper, "") + back + "Z") + line;
+  if (style == PlotStyle::kLine) return line;
+  return line + draw("marker", Points(x, y, "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z"));
 }
 
 /// Returns the classes of a series: in these it differs from others, in colour, and beyond the
@@ -317,7 +304,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   Values all_y;
   for (const PlotSeries& series : panel.series) {
     Append(series, 'x', series.x, panel.log_x, all_x);
-    for (const auto y : HeightsOf(series)) Append(series, 'y', series.*y, panel.log_y, all_y);
+    Append(series, 'y', series.y, panel.log_y, all_y);
   }
   for (const PlotMark& mark : panel.marks) all_x.push_back(mark.x);
   Axis x_axis(all_x, 0.02, panel.log_x);
@@ -337,26 +324,23 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   for (const PlotSeries& series : panel.series) {
     if (!series.shade && (place < 0 || !series.label.empty())) ++place;
     const std::string look = LookOf(series, place);
-    PlotSeries pixels{.style = series.style};
+    Values x;
+    Values y;
     const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
     for (const std::size_t point : Thinned(series, most)) {
-      pixels.x.push_back(x_axis.Pixel(series.x[point]));
-      for (const auto y : HeightsOf(series)) {
-        (pixels.*y).push_back(y_axis.Pixel((series.*y)[point]));
-      }
+      x.push_back(x_axis.Pixel(series.x[point]));
+      y.push_back(y_axis.Pixel(series.y[point]));
     }
-    drawing.elements += DrawSeries(pixels, look);
+    drawing.elements += DrawSeries(x, y, series.style, look);
     if (series.label.empty()) continue;
     const double size = kSymbol + WidthOf(series.label);
     if (entry + size > width) {
       entry = 0;
       drawing.height += kRow;
     }
-    PlotSeries symbol{.x = {1, 25}, .y = {6, 6}, .style = series.style, .lower = {12, 12}};
-    if (series.style == PlotStyle::kMarkers) symbol.x = {13, 13};
-    symbol.upper = {0, 0};
-    drawing.elements += Group(entry, drawing.height - kRow,
-                              DrawSeries(symbol, look) + Text(kSymbol, 11, "start", series.label));
+    drawing.elements += Group(
+        entry, drawing.height - kRow,
+        DrawSeries({1, 25}, {6, 6}, series.style, look) + Text(kSymbol, 11, "start", series.label));
     entry += size;
   }
   return drawing;

@@ -59,9 +59,7 @@ void ScaleAxes(io::PlotPanel& panel, std::string_view x_name, std::string_view x
   const ScaledUnit upward = UnitFor(y_unit, height);
   for (io::PlotSeries& series : panel.series) {
     for (double& x : series.x) x /= along.factor;
-    for (auto* values : {&series.y, &series.lower, &series.upper}) {
-      for (double& y : *values) y /= upward.factor;
-    }
+    for (double& y : series.y) y /= upward.factor;
   }
   panel.x_label = WithUnit(x_name, along.name);
   panel.y_label = WithUnit(y_name, upward.name);

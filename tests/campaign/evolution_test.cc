@@ -90,7 +90,7 @@ TEST(EvolutionPanels, DrawEachQuantityOverALogarithmicAxisOfCycles) {
   EXPECT_EQ(panels[0].marks[0].label, "settled, 480");
   EXPECT_EQ(panels[2].y_label, "sigma [N/µm]");
   EXPECT_EQ(panels[2].marks[0].label, "step, 61");
-  const io::PlotSeries& course = panels[2].series[0];
+  const io::PlotSeries& course = panels[2].series[1];
   ASSERT_THAT(course.x, SizeIs(200));
   EXPECT_NEAR(course.y[1], 50.0, 1e-9);
   Evolution one = RunIn()[2];

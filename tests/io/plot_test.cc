@@ -23,8 +23,6 @@ PlotSeries Wave(std::size_t points, PlotStyle style) {
     series.x.push_back(static_cast<double>(i));
     series.y.push_back(std::sin(0.01 * static_cast<double>(i)));
   }
-  series.lower = series.y;
-  series.upper = series.y;
   return series;
 }
 
@@ -96,9 +94,10 @@ TEST(Plot, WritesSvgWithLabelsAsTheyAre) {
 
 TEST(Plot, DrawsEveryStyle) {
   const std::vector<std::pair<PlotStyle, std::vector<std::string>>> drawn = {
-      {PlotStyle::kLine, {"line"}},         {PlotStyle::kPoints, {"dots"}},
-      {PlotStyle::kMarkers, {"marker"}},    {PlotStyle::kLineAndPoints, {"line", "marker"}},
-      {PlotStyle::kBand, {"area", "line"}},
+      {PlotStyle::kLine, {"line"}},
+      {PlotStyle::kPoints, {"dots"}},
+      {PlotStyle::kLineAndPoints, {"line", "marker"}},
+      {PlotStyle::kArea, {"area"}},
   };
   for (const auto& [style, kinds] : drawn) {
     Plot plot = OnePanel(Wave(20, style));
@@ -150,17 +149,6 @@ TEST(Plot, PutsLabelsOfMarksWhereTheyHaveRoom) {
   EXPECT_THAT(svg, HasSubstr("text-anchor=\"end\">the last")) << "on the left of its line";
 }
 
-TEST(Plot, DrawsABandThatReachesToItsEnds) {
-  // The axis takes the ends in: 9 is beyond every point.
-  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kBand});
-  EXPECT_THROW(Svg(plot), InvalidArgument) << "no ends";
-  plot.panels.front().series.front().lower = {0, 1, 0};
-  plot.panels.front().series.front().upper = {2, 9, 2};
-  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 1u);
-  plot.panels.front().series.front().style = PlotStyle::kMarkers;
-  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 0u);
-}
-
 TEST(Plot, LabelsLogarithmicAxes) {
   const auto svg = [](std::vector<double> y) {
     Plot plot = OnePanel({"", std::vector<double>(y.size(), 0.0), std::move(y)});
@@ -191,7 +179,7 @@ TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
   plot.panels.push_back({"", "", {}});
   for (int series = 0; series < 12; ++series) {
     plot.panels.front().series.push_back(
-        {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kMarkers});
+        {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kLineAndPoints});
   }
   EXPECT_THAT(testing::Matches(Svg(plot), "class=\"marker([^\"]*)\""), SizeIs(12))
       << "colours and fillings";
@@ -224,12 +212,12 @@ TEST(Plot, ThinsLongSeriesAndKeepsTheirPeaks) {
   EXPECT_GT(Dots(Svg(OnePanel(Wave(20'000, PlotStyle::kPoints)))), 19'000u) << "but repeated ones";
   for (const auto& [style, kind] : {std::pair{PlotStyle::kLine, "line"},
                                     {PlotStyle::kPoints, "dots"},
-                                    {PlotStyle::kBand, "area"}}) {
+                                    {PlotStyle::kArea, "area"}}) {
     PlotSeries series = Wave(300'000, style);
-    (style == PlotStyle::kBand ? series.upper : series.y)[31'415] = 50;
-    (style == PlotStyle::kBand ? series.lower : series.y)[27'182] = -70;
+    series.y[31'415] = 50;
+    series.y[27'182] = -70;
     const std::string drawn = DrawPanel(OnePanel(series).panels.front(), 560, 6000).elements;
-    EXPECT_LT(drawn.size(), 250'000u) << "6000 points of some 15 bytes, twice of a band";
+    EXPECT_LT(drawn.size(), 250'000u) << "6000 points of some 15 bytes";
     // Under a margin of 5 % the least and greatest are 280/1.1 px apart.
     const std::vector<double> heights = NumbersAfter(PathOf(drawn, kind), ' ');
     const auto [highest, lowest] = std::ranges::minmax(heights);

@@ -37,9 +37,8 @@ PlotSeries Line(std::string label, const Values& x, const Values& y) {
 }
 
 /// Every stride-th sample.
-PlotSeries Marks(std::string label, const Values& x, const Values& y, PlotStyle style,
-                 std::size_t stride) {
-  PlotSeries marks{.label = std::move(label), .x = {}, .y = {}, .style = style};
+PlotSeries Marks(std::string label, const Values& x, const Values& y, std::size_t stride) {
+  PlotSeries marks{.label = std::move(label), .style = PlotStyle::kPoints};
   for (std::size_t i = 0; i < x.size(); i += stride) {
     marks.x.push_back(x[i]);
     marks.y.push_back(y[i]);
@@ -47,14 +46,14 @@ PlotSeries Marks(std::string label, const Values& x, const Values& y, PlotStyle 
   return marks;
 }
 
-/// About forty markers, at other phases in every cycle, for a curve that lies on another.
+/// About forty dots, at other phases in every cycle, for a curve that lies on another.
 PlotSeries Markers(std::string label, const Values& x, const Values& y) {
-  return Marks(std::move(label), x, y, PlotStyle::kMarkers, x.size() / 43);
+  return Marks(std::move(label), x, y, x.size() / 43);
 }
 
 /// ±y, dotted.
 PlotSeries DotsOnBothSides(std::string label, const Values& x, const Values& y) {
-  PlotSeries dots = Marks(std::move(label), x, y, PlotStyle::kPoints, 25);
+  PlotSeries dots = Marks(std::move(label), x, y, 25);
   for (std::size_t i = dots.x.size(); i-- > 0;) {
     dots.x.push_back(dots.x[i]);
     dots.y.push_back(-dots.y[i]);

@@ -7,9 +7,8 @@
 
 namespace mindahl::io {
 
-/// Points are small dots for dense records; markers are large circles.
-/// A band is a line with the area between the lower and upper ends.
-enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kBand };
+/// Points are small dots for dense records, those on a line are circles; an area is filled.
+enum class PlotStyle { kLine, kPoints, kLineAndPoints, kArea };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
@@ -17,10 +16,8 @@ struct PlotSeries {
   std::vector<double> x = {};  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y = {};  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
-  std::vector<double> lower = {};  ///< ends of y, as many; for kBand
-  std::vector<double> upper = {};
   /// Place on a scale of colours from 0 to 1, where series follow each other as cycles do; else
-  /// each has a colour of its own, and a line without a label that of the series before.
+  /// each has a colour of its own, and one without a label that of the series before.
   std::optional<double> shade = {};
 };
 
@@ -35,7 +32,7 @@ struct PlotPanel {
   std::string x_label{};  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label{};
   std::vector<PlotSeries> series = {};  ///< the first twelve differ in colour and in grey
-  double height = 1.0;                  ///< of the axes, in halves of the width, > 0
+  double height = 1.0;                  ///< axes over half of the width, > 0
   bool log_x = false;
   bool log_y = false;
   std::string title = {};  ///< "" = none
