@@ -54,12 +54,11 @@ RecordFile ReadCsv(const std::string& path, const request::FitRequest& request,
 
 RecordFile RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
                            const std::vector<Array>& arrays, const request::FitRequest& request) {
-  std::vector<io::TableColumn> table;
+  std::vector<io::CsvColumn> columns;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::span<const double> values = SpanOf(arrays.at(k));
-    table.push_back({names[k], {values.begin(), values.end()}});
+    columns.push_back({names[k], SpanOf(arrays.at(k))});
   }
-  return io::RecordOf(io::TableOfColumns(std::move(table), name), ColumnsOf(request));
+  return io::RecordOf(columns, name, ColumnsOf(request));
 }
 
 py::dict CovariatesOf(const py::object& self) {

@@ -6,9 +6,9 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <memory>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "core/text.h"
 #include "io/source.h"
@@ -26,46 +26,43 @@ bool IsMissingMark(std::string_view text) {
   return std::ranges::find(kMissingMarks, LowerCase(text)) != kMissingMarks.end();
 }
 
-/// Takes three whole numbers with one of some signs between them off a text: "10:11:12".
-/// @returns false, and leaves the text, where it does not begin with them
-bool TakeThree(std::string_view& text, std::string_view signs, std::array<int, 3>& numbers) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (int& number : numbers) {
-    if (&number != numbers.data() && (at == end || signs.find(*at++) == signs.npos)) return false;
-    const auto [stop, error] = std::from_chars(at, end, number);
-    if (error != std::errc() || number < 0) return false;
-    at = stop;
-  }
-  text.remove_prefix(static_cast<std::size_t>(at - text.data()));
-  return true;
+/// Returns the start [s] of a day, "2024-03-05", since 1970; 0 where the order of its parts is not
+/// certain.
+std::optional<double> ReadDate(std::string_view text) {
+  const std::size_t sign = text.find_first_of("-./");
+  if (sign == text.npos) return std::nullopt;
+  const std::vector<std::string_view> parts = PartsOf(text, text[sign]);
+  if (parts.size() != 3) return std::nullopt;
+  const auto year = NumberIn<int>(parts[0]);
+  const auto month = NumberIn<unsigned>(parts[1]);
+  const auto day = NumberIn<unsigned>(parts[2]);
+  if (!year || !month || !day) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(*month),
+                                         std::chrono::day(*day)};
+  if (*year < 1970 || !date.ok()) return 0.0;
+  return kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
 
-/// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
-/// not certain, since midnight.
+/// Returns the seconds of "10:11:12.5" since midnight, or those of a date before it and of it.
 std::optional<double> ReadClock(std::string_view text) {
   double midnight = 0.0;
-  std::array<int, 3> parts{};
-  if (TakeThree(text, "-./", parts)) {
-    const std::chrono::year_month_day date{std::chrono::year(parts[0]),
-                                           std::chrono::month(static_cast<unsigned>(parts[1])),
-                                           std::chrono::day(static_cast<unsigned>(parts[2]))};
-    if (parts[0] >= 1970 && date.ok()) {
-      midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
-    }
-    if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
-    text = Trimmed(text.substr(1));
+  if (const std::size_t end = text.find_first_of("T "); end != text.npos) {
+    const std::optional<double> date = ReadDate(text.substr(0, end));
+    if (!date) return std::nullopt;
+    midnight = *date;
+    text = Trimmed(text.substr(end + 1));
   }
-  if (!TakeThree(text, ":", parts)) return std::nullopt;
-  const auto& [hour, minute, second] = parts;
-  if (hour > 23 || minute > 59 || second > 60) return std::nullopt;  // 60: a leap second
-  const double seconds = midnight + 3600.0 * hour + 60.0 * minute + second;
-  // Behind it may be a fraction, and a zone, the same in all rows.
-  if (text.empty() || text.starts_with('Z') || text.starts_with('+')) return seconds;
-  const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
-  const auto fraction = NumberIn<double>("0." + std::string(text.substr(1, end - 1)));
-  const bool is_mark = text.front() == '.' || text.front() == ',';
-  return is_mark && end > 1 && fraction ? std::optional(seconds + *fraction) : std::nullopt;
+  // The zone behind it is the same in all rows.
+  std::string plain(text.substr(0, text.find_first_of("Z+")));
+  std::ranges::replace(plain, ',', '.');
+  const std::vector<std::string_view> parts = PartsOf(plain, ':');
+  if (parts.size() != 3) return std::nullopt;
+  const auto hour = NumberIn<unsigned>(parts[0]);
+  const auto minute = NumberIn<unsigned>(parts[1]);
+  const auto second = NumberIn<double>(parts[2]);  // to 60 in one that leaps
+  if (!hour || !minute || !second || *hour > 23 || *minute > 59) return std::nullopt;
+  if (!(*second >= 0 && *second < 61)) return std::nullopt;
+  return midnight + 3600.0 * *hour + 60.0 * *minute + *second;
 }
 
 }  // namespace
@@ -88,7 +85,9 @@ std::string_view CellCursor::Take() {
   const char* end = at_;
   if (at_ == end_ || *at_ != '"') {
     while (end != end_ && !IsDelimiter(*end)) ++end;
-    const std::string_view cell = Trimmed({at_, static_cast<std::size_t>(end - at_)});
+    const char* last = end;
+    while (last != at_ && (last[-1] == ' ' || last[-1] == '\t' || last[-1] == '\r')) --last;
+    const std::string_view cell(at_, static_cast<std::size_t>(last - at_));
     GoBehind(end);
     return cell;
   }
@@ -142,9 +141,7 @@ Cell ReadCell(std::string_view text, char delimiter) {
   if (const std::optional<double> seconds = ReadClock(text)) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
-  std::array<int, 3> date{};
-  const bool is_date = TakeThree(text, "-./", date) && text.empty();
-  return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
+  return {.kind = ReadDate(text) ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
 std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {

@@ -41,17 +41,6 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
-  /// Takes the next cell unread.
-  /// @returns true if it is not empty
-  bool Skip() {
-    const char* const begin = SkipBlanks(at_);
-    if (begin != end_ && *begin == '"') return !Take().empty();
-    const char* end = begin;
-    while (end != end_ && !IsDelimiter(*end)) ++end;
-    GoBehind(end);
-    return end != begin;
-  }
-
   /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
   /// @returns its text; empty where it is none, and is not taken
   std::string_view TakeNumber(double& value) {
@@ -72,7 +61,7 @@ class CellCursor {
     return character == delimiter_ || (delimiter_ == kBlanks && character == '\t');
   }
   [[nodiscard]] const char* SkipBlanks(const char* at) const {
-    while (at != end_ && (*at == ' ' || (*at == '\t' && delimiter_ != '\t'))) ++at;
+    while (at != end_ && (*at == ' ' || *at == '\r' || (*at == '\t' && delimiter_ != '\t'))) ++at;
     return at;
   }
   /// @param delimiter  at the end of a cell, or of the row

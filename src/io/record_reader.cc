@@ -9,24 +9,23 @@
 #include <numeric>
 #include <utility>
 
-#include "io/roles.h"
-#include "io/table_reader.h"
-#include "mindahl/io/csv_table.h"
+#include "io/columns.h"
+#include "io/source.h"
+#include "io/table.h"
+#include "mindahl/loop/segments.h"
 
 namespace mindahl::io {
 namespace {
 
-bool IsNumber(double value) { return std::isfinite(value); }
-
 /// Refuses numbers of a register whose bit 1024 is a sign: none lies in the upper half of those
 /// below it, and there are some on both sides.
-void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
+void RequireNoSignBit(const Columns& columns, const Quantity& quantity) {
   constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
   double below = -1.0;
   double above = 0.0;
-  for (const double value : names.table().columns[column].values) {
-    if (!IsNumber(value)) continue;
+  for (const double value : columns.table().columns[column].values) {
+    if (!std::isfinite(value)) continue;
     if (value < 0 || value >= 2 * kBit || value != std::floor(value)) return;
     double& greatest = value < kBit ? below : above;
     greatest = std::max(greatest, value);
@@ -35,32 +34,48 @@ void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
       "write signed numbers, {} - value where the value is {} or more",
-      names.Header(), names.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name, kBit,
-      kBit);
+      columns.Header(), columns.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name,
+      kBit, kBit);
 }
 
 }  // namespace
+
+std::string LeftOutRows::InWords() const {
+  return fmt::format("{} row{} left out, the first: {}", count, count == 1 ? " is" : "s are",
+                     fault);
+}
 
 /// Turns the rows of tables into samples of a record.
 class RecordBuilder {
  public:
   /// Assigns the columns, by the rows that the table has.
-  RecordBuilder(const ColumnNames& names, const RecordColumns& asked)
+  RecordBuilder(const Columns& columns, const RecordColumns& asked)
       : skip_broken_(asked.skip_broken_rows) {
-    const CsvTable& table = names.table();
+    const CsvTable& table = columns.table();
     const std::optional<double>& rate = asked.sample_rate;
-    if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
-      Refuse("--sample-rate {}: must be finite and > 0 Hz", *rate);
-    }
-    if (rate && !asked.time.empty()) {
-      Refuse("{}: --time and --sample-rate exclude each other", table.file);
+    if (rate && (!(*rate > 0) || !std::isfinite(*rate) || !asked.time.empty())) {
+      Refuse("{}: --sample-rate {}: must be finite and > 0 Hz, and --time excludes it", table.file,
+             *rate);
     }
     file_.name = table.file;
     file_.notes = table.notes;
-    for (Quantity& quantity : AssignRoles(names, asked, file_.notes)) {
+    quantities_ = AssignRoles(columns, asked, file_.notes);
+    for (const Quantity& quantity : quantities_) {
       const RoleRules& role = RulesOf(quantity.role);
-      file_.*role.chosen = Choose(names, quantity, asked.*role.given);
-      quantities_.push_back(std::move(quantity));
+      const std::size_t first = quantity.first_column();
+      const bool is_plain = quantity.is_plain();
+      if (is_plain && quantity.role <= Role::kForce) RequireNoSignBit(columns, quantity);
+      for (const Quantity::Term& term : quantity.terms) {
+        if (table.columns[term.column].values.empty())
+          static_cast<void>(table.Numbers(term.column));
+        if (std::ranges::find(wanted_, term.column) == wanted_.end()) {
+          wanted_.push_back(term.column);
+        }
+      }
+      file_.*role.chosen = {.name = is_plain ? table.columns[first].name : asked.*role.given,
+                            .index = first + 1,
+                            .unit = quantity.unit.symbol,
+                            .has_no_unit = quantity.has_no_unit};
     }
     file_.is_torsional = quantities_.front().unit.dimension == Dimension::kAngle;
     if (file_.time) return;
@@ -80,35 +95,31 @@ class RecordBuilder {
   /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples) {
-    std::vector<std::vector<double>*> columns;  // of the quantities
-    columns.reserve(quantities_.size());
-    for (const Quantity& quantity : quantities_) {
-      columns.push_back(&(samples.*RulesOf(quantity.role).values));
-    }
     const bool has_interval = !file_.time && interval_ > 0;
     const auto resize = [&](std::size_t size) {
       samples.lines.resize(size);
       if (has_interval) samples.time.resize(size);
-      for (std::vector<double>* column : columns) column->resize(size);
+      for (const Quantity& of : quantities_) (samples.*RulesOf(of.role).values).resize(size);
     };
     std::size_t kept = samples.lines.size();
     resize(kept + table.rows());
+    std::vector<double*> values;  // of the quantities
+    for (const Quantity& of : quantities_)
+      values.push_back((samples.*RulesOf(of.role).values).data());
     LeftOutRows& left_out = file_.left_out;
     std::string refusal;
     auto block = table.blocks.begin();
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
-      if (block != table.blocks.end() && row == *block) {
-        times_.NextPiece();
-        ++block;
-      }
+      const bool begins_block = block != table.blocks.end() && row == *block;
+      if (begins_block) ++block;
       bool is_whole = true;
-      for (std::size_t k = 0; k < columns.size(); ++k) {
+      for (std::size_t k = 0; k < values.size(); ++k) {
         const Quantity& quantity = quantities_[k];
-        double& value = (*columns[k])[kept];
-        value = quantity.ValueIn(table, row);
+        double& value = values[k][kept] = quantity.ValueIn(table, row);
         if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
         is_whole = is_whole && std::isfinite(value);
       }
+      begins_block_ = begins_block_ || begins_block;
       if (is_whole && (!file_.time || Follows(samples.time[kept]))) {
         if (has_interval) samples.time[kept] = static_cast<double>(rows_) * interval_;
         samples.lines[kept++] = table.lines[row];
@@ -132,30 +143,14 @@ class RecordBuilder {
   }
 
  private:
-  /// @param text  by which it was chosen
-  ChosenColumn Choose(const ColumnNames& names, const Quantity& quantity, const std::string& text) {
-    const Role role = quantity.role;
-    const bool is_plain = quantity.is_plain();
-    const std::size_t first = quantity.first_column();
-    if (is_plain && (role == Role::kDisplacement || role == Role::kForce)) {
-      RequireNoSignBit(names, quantity);
-    }
-    const std::vector<TableColumn>& columns = names.table().columns;
-    for (const Quantity::Term& term : quantity.terms) {
-      if (columns[term.column].values.empty())
-        static_cast<void>(names.table().Numbers(term.column));
-      if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
-    }
-    return {.name = is_plain ? columns[first].name : text,
-            .index = first + 1,
-            .unit = quantity.unit.symbol,
-            .has_no_unit = quantity.has_no_unit};
-  }
-
-  /// Converts a time.
+  /// Converts a time; where a clock begins anew in a further block, it goes on by one step.
   /// @returns false where it is before the last
   bool Follows(double& time) {
-    time = times_.Next(time);
+    if (std::exchange(begins_block_, false) && time + shift_ < last_time_) {
+      shift_ = last_time_ + step_ - time;
+    }
+    time += shift_;
+    if (std::isfinite(last_time_) && time >= last_time_) step_ = time - last_time_;
     time_above_ = std::exchange(last_time_, time);
     if (time < time_above_) return false;
     time = quantities_[2].unit.ToSi(time);
@@ -166,30 +161,32 @@ class RecordBuilder {
   std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
     for (const std::size_t column : wanted_) {
       const TableColumn& of = table.columns[column];
-      if (IsNumber(of.values[row])) continue;
+      if (std::isfinite(of.values[row])) continue;
       is_missing = std::isnan(of.values[row]);
       return is_missing ? of.missing : of.broken;
     }
+    const std::string where = fmt::format("{}:{}", table.file, table.lines[row]);
     if (!file_.time || last_time_ >= time_above_) {
-      return fmt::format("{}:{}: has a number that is too large in SI units", table.file,
-                         table.lines[row]);
+      return where + ": has a number that is too large in SI units";
     }
     const Quantity& time = quantities_[2];
     return fmt::format(
-        "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
-        "the "
+        "{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
         "rows, split the file where a clock starts again, or rename the column if it holds no time",
-        table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
-        time_above_, time.unit.symbol);
+        where, time.first_column() + 1, last_time_, time.unit.symbol, time_above_,
+        time.unit.symbol);
   }
 
   RecordFile file_;
   std::vector<Quantity> quantities_;
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
-  std::size_t rows_ = 0;   // seen so far
-  double interval_ = 0.0;  // [s] between rows, in place of a column of times
-  JoinedTimes times_;      // of the blocks, in their unit
+  std::size_t rows_ = 0;       // seen so far
+  double interval_ = 0.0;      // [s] between rows, in place of a column of times
+  bool begins_block_ = false;  // and no time of the block was seen
+  // Times are in their unit.
+  double shift_ = 0.0;
+  double step_ = 0.0;
   double last_time_ = -std::numeric_limits<double>::infinity();
   double time_above_ = 0.0;  // the one before the last
 };
@@ -198,10 +195,10 @@ namespace {
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
-void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
+void AddCovariates(const Columns& columns, const std::vector<std::string>& choices,
                    RecordFile& file) {
-  const CsvTable& table = names.table();
-  std::vector<bool> is_read(names.size());
+  const CsvTable& table = columns.table();
+  std::vector<bool> is_read(columns.size() + 1);  // by the number from 1
   const auto add = [&](std::size_t column, const std::string& name, bool may_be_constant) {
     const std::vector<double>& all = table.columns[column].values;
     std::vector<double> values;
@@ -209,78 +206,74 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
       if (table.lines[row] == file.lines[values.size()]) values.push_back(all[row]);
     }
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
-    if (values.empty() || !std::ranges::all_of(values, IsNumber)) return false;
-    if (!changes && !may_be_constant) return false;
+    const bool is_whole =
+        std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+    if (values.empty() || !is_whole || (!changes && !may_be_constant)) return false;
     file.record.covariates.push_back(
-        {.name = name, .unit = names.UnitOf(column, Role::kOther), .values = std::move(values)});
-    is_read[column] = true;
+        {.name = name, .unit = columns.UnitOf(column, Role::kOther), .values = std::move(values)});
+    is_read[column + 1] = true;
     return true;
   };
-  const auto mark = [&](const ChosenColumn& used) {
-    if (used) is_read[used.index - 1] = true;
-  };
-  mark(file.displacement);
-  mark(file.force);
+  is_read[file.displacement.index] = is_read[file.force.index] = true;
   for (const std::string& choice : choices) {
-    const std::size_t column = names.Chosen(choice, Role::kOther);
-    if (is_read[column]) {
+    const std::size_t column = ReadCovariate(choice, columns);
+    if (is_read[column + 1]) {
       Refuse("{}: {} is used already: choose another column for the covariate", table.file,
-             names.Label(column));
+             columns.Label(column));
     }
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
-  mark(file.time);
-  mark(file.normal_load);
+  is_read[file.time.index] = is_read[file.normal_load.index] = true;
   const std::size_t most = choices.size() + kMostOtherColumns;
-  for (std::size_t column = 0; column < names.size(); ++column) {
-    if (is_read[column] || names[column].is_clock) continue;
-    if (file.record.covariates.size() < most) add(column, names.NameOf(column), false);
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    const std::string& name = columns[column].name;
+    const bool is_one = !name.empty() && std::ranges::count(columns, name, &Column::name) == 1;
+    if (is_read[column + 1] || columns[column].is_clock) continue;
+    if (file.record.covariates.size() == most) return;
+    add(column, is_one ? name : std::to_string(column + 1), false);
   }
 }
 
 /// Returns the time of a table, by which another is joined to it, where it has one.
 std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) {
-  const ColumnNames names(table);
-  Quantity time = names.Read(given, Role::kTime);
-  if (time.terms.empty()) {
-    const std::optional<std::size_t> best = names.Best(Role::kTime);
-    if (!best) return std::nullopt;
-    time.terms = {{*best, 1.0}};
-  }
+  const Columns columns(table);
+  Quantity time = ReadQuantity(given, columns, Role::kTime);
+  const std::optional<std::size_t> best = BestColumn(columns, Role::kTime);
+  if (time.terms.empty() && !best) return std::nullopt;
+  if (time.terms.empty()) time.terms = {{*best}};
   std::vector<std::string> notes;
-  names.FindUnitOf(time, false, notes);
+  const double offset = time.offset;
+  FindUnitOf(time, columns, false, notes);
+  time.offset = offset;  // stamps are of one clock
   return time;
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
 /// lines, where both have a time, else row by row.
 void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& given_time) {
-  const auto time_of_table = TimeOf(table, given_time);
-  const auto time_of_other = TimeOf(other, "");
-  std::vector<double> times;
-  if (time_of_table && time_of_other) times = time_of_other->Numbers(other);
-  const bool by_time = !times.empty() && std::ranges::is_sorted(times);
+  const std::optional<Quantity> time = TimeOf(table, given_time);
+  const std::optional<Quantity> time_of_other = TimeOf(other, "");
+  std::vector<double> from;
+  if (time && time_of_other) from = time_of_other->Numbers(other);
+  const bool by_time = !from.empty() && std::ranges::is_sorted(from);
   if (!by_time && table.rows() != other.rows()) {
     Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
            table.file, table.rows(), other.file, other.rows());
   }
   for (const TableColumn& column : other.columns) {
     TableColumn& added = table.columns.emplace_back(column);
-    if (!by_time || added.values.empty()) continue;
-    added.values.clear();
+    if (!by_time || column.values.empty()) continue;
+    added.values.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      const double time = time_of_table->unit.ToSi(time_of_table->ValueIn(table, row));
-      const auto next = std::ranges::lower_bound(times, time);
-      const auto k = static_cast<std::size_t>(next - times.begin());
-      double& value = added.values.emplace_back();
-      if (next != times.end() && *next == time) {
-        value = column.values[k];
-      } else if (k > 0 && next != times.end()) {
-        value = std::lerp(column.values[k - 1], column.values[k],
-                          (time - times[k - 1]) / (times[k] - times[k - 1]));
-      } else {
-        value = std::numeric_limits<double>::quiet_NaN();
-        if (!added.missing.empty()) continue;
+      const double to = time->unit.ToSi(time->ValueIn(table, row));
+      const auto next = std::ranges::lower_bound(from, to);
+      const auto k = static_cast<std::size_t>(next - from.begin());
+      if (next != from.end() && *next == to) {
+        added.values[row] = column.values[k];
+      } else if (k > 0 && next != from.end()) {
+        added.values[row] = std::lerp(column.values[k - 1], column.values[k],
+                                      (to - from[k - 1]) / (from[k] - from[k - 1]));
+      } else if (added.missing.empty()) {
         added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
                                     table.lines[row], other.file);
       }
@@ -292,11 +285,9 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
   table.header_line = std::max<std::size_t>(table.header_line, 1);
 }
 
-}  // namespace
-
-RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
-  const ColumnNames names(table);
-  RecordBuilder builder(names, columns);
+RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
+  const Columns columns(table);
+  RecordBuilder builder(columns, asked);
   Samples samples;
   std::string fault = builder.Add(table, samples);
   RecordFile& file = builder.file();
@@ -305,45 +296,72 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
-  AddCovariates(names, columns.covariates, file);
+  AddCovariates(columns, asked.covariates, file);
   return std::move(file);
 }
 
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
-  CsvTable table = ReadCsvTable(path, columns.encoding);
-  if (!columns.with.empty()) {
-    AddColumnsOf(table, ReadCsvTable(columns.with, columns.encoding), columns.time);
+}  // namespace
+
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& asked) {
+  CsvTable table = ReadCsvTable(path, asked.encoding);
+  if (!asked.with.empty()) {
+    AddColumnsOf(table, ReadCsvTable(asked.with, asked.encoding), asked.time);
   }
-  RecordFile file = RecordOf(table, columns);
+  RecordFile file = RecordIn(table, asked);
   file.name = path.string();
   return file;
+}
+
+RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
+                    const RecordColumns& asked) {
+  if (columns.empty() || columns.front().values.empty()) {
+    Refuse("{}: there is no {}", source, columns.empty() ? "column" : "row");
+  }
+  CsvTable table{.file = std::move(source), .header_line = 1};
+  table.lines.resize(columns.front().values.size());
+  std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
+  for (const auto& [name, values] : columns) {
+    if (values.size() != table.rows()) {
+      Refuse("{}: '{}' has {} rows and '{}' {}: give as many of both", table.file,
+             columns.front().name, table.rows(), name, values.size());
+    }
+    TableColumn& added = table.columns.emplace_back(
+        TableColumn{.name = name, .values = {values.begin(), values.end()}});
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (std::isfinite(values[row])) continue;
+      std::string& said = std::isnan(values[row]) ? added.missing : added.broken;
+      if (!said.empty()) continue;
+      said = fmt::format("{}:{}:{}: holds no number", table.file, row + 1, table.columns.size());
+    }
+  }
+  return RecordIn(table, asked);
 }
 
 std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
                                         const std::string& column) {
   const CsvTable table = ReadCsvTable(path);
-  const ColumnNames names(table);
-  Quantity displacement = names.Read(column, Role::kDisplacement);
+  const Columns columns(table);
+  Quantity displacement = ReadQuantity(column, columns, Role::kDisplacement);
   if (displacement.terms.empty()) {
-    const bool first_is_another = names.Best(Role::kTime) == 0U || names.Best(Role::kForce) == 0U;
-    const auto best = first_is_another ? names.Best(Role::kDisplacement) : std::nullopt;
-    displacement.terms = {{best.value_or(0), 1.0}};
+    const bool first_is_another =
+        BestColumn(columns, Role::kTime) == 0U || BestColumn(columns, Role::kForce) == 0U;
+    const auto best = first_is_another ? BestColumn(columns, Role::kDisplacement) : std::nullopt;
+    displacement.terms = {{best.value_or(0)}};
   }
-  const bool is_torsional =
-      names[displacement.first_column()].IsAngular(displacement.given_unit) == true;
+  const Column& first = columns[displacement.first_column()];
   std::vector<std::string> notes;  // SI is the documented default here
-  names.FindUnitOf(displacement, is_torsional, notes);
+  FindUnitOf(displacement, columns, first.IsAngular(displacement.given_unit) == true, notes);
   return displacement.Numbers(table);
 }
 
 struct RecordStream::State {
-  State(const std::filesystem::path& path, const RecordColumns& columns)
-      : pieces(path, columns.encoding),
+  State(const std::filesystem::path& path, const RecordColumns& asked)
+      : pieces(path, asked.encoding),
         rows(pieces.Next()),
         layout(FindLayout(rows, NameOfInput(path))),
-        builder(ColumnNames(FirstRows()), columns),
+        builder(Columns(FirstRows()), asked),
         reader(layout, builder.wanted()) {
-    if (!columns.with.empty()) {
+    if (!asked.with.empty()) {
       Refuse("--with: a record that is read in pieces is of one file: join them before");
     }
     rows.remove_prefix(layout.data_offset);
@@ -369,8 +387,8 @@ struct RecordStream::State {
   std::string refusal;  // of a row that is reached next
 };
 
-RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& columns)
-    : state_(std::make_unique<State>(path, columns)) {}
+RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& asked)
+    : state_(std::make_unique<State>(path, asked)) {}
 RecordStream::~RecordStream() = default;
 
 const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
@@ -389,6 +407,48 @@ bool RecordStream::Next(Samples& samples) {
     if (text.empty() && refusal.empty()) return false;
   }
   return true;
+}
+
+void KeepTimeWindow(RecordFile& input, double first, double last) {
+  const std::vector<double>& time = input.record.time;
+  if (time.empty()) {
+    Refuse("{}: --time-window needs a time column: name it with --time", input.name);
+  }
+  const auto begin = std::ranges::lower_bound(time, first);
+  const auto end = std::ranges::upper_bound(time, last);
+  if (begin >= end) {
+    Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", input.name,
+           first, last, time.front(), time.back());
+  }
+  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s",
+                                    input.name, end - begin, time.size(), first, last));
+  KeepSamples(input, static_cast<std::size_t>(begin - time.begin()),
+              static_cast<std::size_t>(end - time.begin()));
+}
+
+void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
+  const auto keep = [first, last](auto& column) {
+    if (column.empty()) return;
+    column.resize(last);
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  for (const auto column : loop::kRecordColumns) keep(input.record.*column);
+  for (loop::Covariate& covariate : input.record.covariates) keep(covariate.values);
+  keep(input.lines);
+}
+
+std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input) {
+  const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
+  if (pieces.empty()) return {input};
+  std::vector<RecordFile> records;
+  for (const loop::ConstantLoad& piece : pieces) {
+    RecordFile& added = records.emplace_back(input);
+    KeepSamples(added, piece.first, piece.last);
+    added.notes.clear();
+    added.name = fmt::format("{}:{}-{}", input.name, input.LineOf(piece.first),
+                             input.LineOf(piece.last - 1));
+  }
+  return records;
 }
 
 }  // namespace mindahl::io

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "mindahl/core/error.h"
-#include "mindahl/io/csv_table.h"
 
 namespace mindahl::io {
 namespace {

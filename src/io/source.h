@@ -14,6 +14,9 @@ struct gzFile_s;  // NOLINT(readability-identifier-naming): zlib's
 
 namespace mindahl::io {
 
+/// The name of standard input where a file is asked for.
+inline constexpr std::string_view kStandardInput = "-";
+
 /// Bytes of the longest line that is read as a row of a record.
 inline constexpr std::size_t kLongestLine = 16U << 20U;
 

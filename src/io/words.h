@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "io/column_name.h"
+#include "io/columns.h"
 
 namespace mindahl::io {
 

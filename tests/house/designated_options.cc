@@ -7,7 +7,6 @@
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/term_selection.h"
-#include "mindahl/io/csv_table.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/preparation.h"

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "io/table.h"
 #include "reading.h"
 
 namespace mindahl::io::csv_table_test {

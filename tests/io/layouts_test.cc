@@ -347,7 +347,7 @@ TEST(SampleRate, StandsInForATime) {
   EXPECT_EQ(Read("x,F\n1,2\n2,3,4\n3,4\n", columns).record.time, (Numbers{0.0, 0.02}))
       << "a row that is left out takes its time";
   columns.time = "x";
-  EXPECT_THAT(Refusal("x,F\n1,2\n", columns), HasSubstr("exclude each other"));
+  EXPECT_THAT(Refusal("x,F\n1,2\n", columns), HasSubstr("and --time excludes it"));
 }
 
 TEST(WithAnotherFile, JoinsColumnsRowByRowOrByTime) {

@@ -292,13 +292,24 @@ TEST(ImposedDisplacement, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::string Said(const std::vector<TableColumn>& columns) {
-  return MessageOf<InputError>([&] { RecordOf(TableOfColumns(columns, "frame")); });
+struct Named {
+  std::string name;
+  Numbers values;
+};
+
+RecordFile OfColumns(const std::vector<Named>& columns) {
+  std::vector<CsvColumn> spans;
+  for (const auto& [name, values] : columns) spans.push_back({name, values});
+  return RecordOf(spans, "frame");
 }
 
-TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
-  const RecordFile file = RecordOf(TableOfColumns(
-      {{"F (kN)", {1, 2, 3}}, {"temp", {20, 21, 22}}, {"x [um]", {0, 1, 0}}}, "frame"));
+std::string Said(const std::vector<Named>& columns) {
+  return MessageOf<InputError>([&] { OfColumns(columns); });
+}
+
+TEST(ColumnsInMemory, AreReadByNamesAndUnitsAsAFileIs) {
+  const RecordFile file =
+      OfColumns({{"F (kN)", {1, 2, 3}}, {"temp", {20, 21, 22}}, {"x [um]", {0, 1, 0}}});
   EXPECT_EQ(file.record.force, (Numbers{1000, 2000, 3000}));
   EXPECT_EQ(file.record.displacement, (Numbers{0, 1e-6, 0}));
   EXPECT_EQ(file.displacement.index, 3U);
@@ -307,7 +318,7 @@ TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
   EXPECT_EQ(file.lines, (std::vector<std::size_t>{1, 2, 3}));
 }
 
-TEST(ColumnTable, IsRefusedWhereANumberARowOrAColumnIsMissing) {
+TEST(ColumnsInMemory, AreRefusedWhereANumberARowOrAColumnIsMissing) {
   EXPECT_EQ(Said({{"x [m]", {0, 1, 2}}, {"F [N]", {0, kMissing, 2}}}),
             "frame:2:2: holds no number; 1 of 3 rows are so: --broken-rows skip leaves them out");
   EXPECT_EQ(Said({{"x", {0, 1}}, {"F", {0}}}),

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +23,7 @@ struct RecordColumns {
   std::string time{};
   std::string normal_load{};                 ///< "none": no column, whatever names say
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
-  std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
+  std::string encoding = {};                 ///< name of iconv; "" for the one that is found
   std::optional<double> sample_rate = {};    // [Hz], of a file without a time
   /// Another file of the same test, whose columns follow those of the first, by time where both
   /// have one, else row by row.
@@ -41,6 +39,16 @@ struct ChosenColumn {
   bool has_no_unit = false;  ///< the file and the request name none: the unit is assumed
 
   explicit operator bool() const { return index > 0; }
+};
+
+/// Rows that were left out, as a column that is used has no number there, and the fault of the
+/// first.
+struct LeftOutRows {
+  std::size_t count = 0;
+  std::string fault = {};  ///< "file:line:column: …"
+
+  /// "2 rows are left out, the first: loop.csv:3:1: …"
+  [[nodiscard]] std::string InWords() const;
 };
 
 /// A record and where it came from.
@@ -63,39 +71,37 @@ struct RecordFile {
 /// Largest number of columns that a record keeps without being asked for.
 inline constexpr std::size_t kMostOtherColumns = 8;
 
-/// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file (see
-/// csv_table.h).
+/// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file, plain or
+/// compressed by gzip; "-" is standard input, and ./- a file of that name. docs/input.md says what
+/// it may look like.
 ///
-/// *Columns.* As given; else by evidence: the unit, in brackets, behind the name or in a units row;
-/// the words of the name, of the table in src/io/words.h, instruments before it aside; and the
+/// *Columns.* As given; else by evidence: the unit, the words of the name (src/io/words.h) and the
 /// numbers, which go to and fro or only grow. A unit counts more than a word, and numbers that go
 /// to and fro most; what no unit and no word decides is taken from the columns that are left, if
 /// they are as many, with a note. Several columns with the same evidence, a displacement or force
 /// without a unit that only grows while the other goes to and fro, a coefficient of friction and a
 /// register with a sign bit are refused.
 ///
-/// *Units.* As given; else of the header, where two that differ are an error; else m, N, s, with a
-/// note. An angle and a torque go together.
+/// *Units.* As given; else of the header; else m, N, s, with a note. Stamps and times of day count
+/// from the first row; in a further block of rows a clock may begin anew.
 ///
-/// *Time.* A number; or a stamp since 1970, in s, ms, us or ns, or a time of day, perhaps behind a
-/// date ("2024-03-05T10:11:12.5"), which count from the first row, with a note. In a further block
-/// of rows a clock may begin anew.
+/// *Rows* without a number in a column that is used are left out, with a note; more than one in a
+/// hundred are an error, unless broken rows are skipped.
 ///
-/// *Rows.* A row in which a cell that is used is empty or holds a mark of a missing number is left
-/// out, with a note; more than one in a hundred are an error, unless broken rows are skipped.
-///
-/// *Covariates.* Those chosen; then up to kMostOtherColumns of the others in their order, called by
-/// their name without its unit, or else by number: of those that hold a number in every row, and
-/// not the same in all.
+/// *Covariates.* Those chosen; then up to kMostOtherColumns of the others that hold a number in
+/// every row, not the same in all, called by their name without its unit, or else by number.
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
 ///   number, a time before that of the row above; a file beyond the limits
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
 
-/// Reads a table in memory as ReadRecord() reads a file.
-/// @throws InputError as ReadRecord()
-RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
+/// Reads columns in memory as ReadRecord() reads a file with their names, with units, in its first
+/// line; lines are rows, counted from 1.
+/// @param source  where they are from, for messages
+/// @throws InputError as ReadRecord(), and where lengths differ or there is no column or row
+RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
+                    const RecordColumns& asked = {});
 
 /// Samples of a record [m, N, s, N], or [rad, N m, s, N], in the order of the file.
 struct Samples : loop::Record {
@@ -128,22 +134,6 @@ class RecordStream {
  private:
   struct State;
   std::unique_ptr<State> state_;
-};
-
-/// Puts the times of blocks of a file one after the other: where a clock begins anew, one step
-/// after the last time of the block before.
-class JoinedTimes {
- public:
-  /// Declares that the times that follow are from another block.
-  void NextPiece() { begins_ = true; }
-  /// Returns the next time, in its unit, in the joined record.
-  double Next(double time);
-
- private:
-  bool begins_ = false;
-  double shift_ = 0.0;
-  double last_ = -std::numeric_limits<double>::infinity();
-  double step_ = 0.0;
 };
 
 /// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very

@@ -1,0 +1,385 @@
+#include "io/columns.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/locale/encoding_utf.hpp>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "core/refuse.h"
+#include "core/text.h"
+#include "io/cells.h"
+#include "io/source.h"
+#include "io/words.h"
+
+namespace mindahl::io {
+namespace {
+
+// The rows are in the order of Role.
+constexpr std::array kRules = {
+    RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle,
+              &RecordColumns::displacement, &RecordFile::displacement, &loop::Record::displacement},
+    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque, &RecordColumns::force,
+              &RecordFile::force, &loop::Record::force},
+    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime, &RecordColumns::time,
+              &RecordFile::time, &loop::Record::time},
+    // A joint carries a torque.
+    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kTorque,
+              &RecordColumns::normal_load, &RecordFile::normal_load, &loop::Record::normal_load},
+    RoleRules{"covariate", "--covariate", {}, {}, nullptr, nullptr, nullptr},
+};
+
+constexpr std::string_view kOtherUnits =
+    "|-|%|V|mV|Volt|Volts|volt|volts|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/"
+    "s|°/s|m/s2|m/s^2|m/s²|"
+    "mm/s2|mm/min|N/s|kN/s|mV/V|cycle|cycles|segments|count|counts|#|J|W|mm/mm|1/s|";
+
+/// Words in brackets at the end of a name that are no unit of it.
+constexpr std::string_view kRemarks =
+    "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
+
+/// Parts of a name in lower case that leave its numbers without a unit: beginnings of a factor, and
+/// words for a ratio.
+constexpr std::array<std::string_view, 18> kNoUnits = {
+    "×",        "*0",      "*1",      " x0.",       " x 0.",      " x10",
+    " x 10",    "1e-",     " e-",     "normalized", "normalised", "normalisiert",
+    "normiert", "percent", "prozent", "pct",        " ratio",     "%"};
+
+/// True if a list "|a|b|" has the word.
+bool Lists(std::string_view list, std::string_view word) {
+  return list.find(fmt::format("|{}|", word)) != list.npos;
+}
+
+bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
+
+bool IsCapital(char character) { return character >= 'A' && character <= 'Z'; }
+bool IsSmall(char character) { return character >= 'a' && character <= 'z'; }
+bool IsLetter(char character) {
+  return IsCapital(character) || IsSmall(character) ||
+         static_cast<unsigned char>(character) >= 0x80;
+}
+
+/// Returns the words of a name between blanks, " in words ": runs of letters, cut where a small one
+/// is followed by a capital.
+std::string WordsIn(std::string_view name) {
+  std::string words = " ";
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const bool is_cut =
+        k > 0 && IsSmall(name[k - 1]) && IsCapital(name[k]) && name.substr(k - 1, 2) != "kN";
+    if ((is_cut || !IsLetter(name[k])) && words.back() != ' ') words += ' ';
+    if (IsLetter(name[k])) words += name[k];
+  }
+  return words.back() == ' ' ? words : words + ' ';
+}
+
+/// Returns words in lower case, the letters of Latin-1 too.
+std::string InLowerCase(std::string words) {
+  for (std::size_t k = 1; k < words.size(); ++k) {
+    const bool is_latin = words[k - 1] == '\xC3' && words[k] <= '\x9E' && words[k] != '\x97';
+    if (IsCapital(words[k]) || is_latin) words[k] = static_cast<char>(words[k] + 0x20);
+  }
+  return words;
+}
+
+std::size_t CountWords(std::string_view words) {
+  return static_cast<std::size_t>(std::ranges::count(words, ' ')) - 1;
+}
+
+/// True for a word of a language that does not part its words by blanks.
+bool IsUnparted(std::string_view word) { return static_cast<unsigned char>(word.front()) >= 0xE3; }
+
+/// Returns the place behind the last match of an entry of the table in such words; 0 where there is
+/// none. "*kraft" is the end of a word.
+std::size_t MatchEnd(std::string_view entry, std::string_view words) {
+  std::string pattern(entry.starts_with('*') ? entry.substr(1) : entry);
+  if (!IsUnparted(entry)) pattern += ' ';
+  if (!IsUnparted(entry) && !entry.starts_with('*')) pattern.insert(0, 1, ' ');
+  const std::size_t at = words.rfind(pattern);
+  return at == std::string_view::npos ? 0 : at + pattern.size();
+}
+
+/// Returns the word that a name is behind the path of an instrument, "AI 1/x", remarks aside; ""
+/// where it has several.
+std::string OnlyWord(std::string_view name) {
+  for (std::size_t at = name.size(); at-- > 1;) {
+    const bool separates = std::string_view("/.:|").find(name[at - 1]) != std::string_view::npos;
+    if (!separates || !IsLetter(name[at])) continue;
+    name.remove_prefix(at);
+    break;
+  }
+  const std::string words = WordsIn(name);
+  std::vector<std::string_view> all = PartsOf(Trimmed(words), ' ');
+  std::erase_if(all, [](std::string_view word) { return Lists(kRemarks, LowerCase(word)); });
+  return all.size() == 1 ? std::string(all.front()) : "";
+}
+
+/// Finds the best word of a name: the entry of most words, of these the last in the name, of these
+/// that of the lowest rank. One letter is a name by itself.
+void FindWord(Column& column) {
+  const std::string words = InLowerCase(WordsIn(column.name));
+  const std::string only = OnlyWord(column.name);
+  std::tuple<std::size_t, std::size_t, int> best{0, 0, 0};
+  for (const WordRow& row : kWords) {
+    for (const std::string_view entry : PartsOf(row.words, '|')) {
+      const bool is_letter = CharactersIn(entry) == 1 && entry.size() < 3;
+      const std::size_t end = !is_letter      ? MatchEnd(entry, words)
+                              : only == entry ? words.size()
+                                              : 0;
+      if (end == 0) continue;
+      const std::size_t size = is_letter           ? CountWords(words)
+                               : IsUnparted(entry) ? CharactersIn(entry)
+                                                   : PartsOf(entry, ' ').size();
+      const std::tuple found{size, end, -row.rank};
+      if (!(best < found)) continue;
+      best = found;
+      column.word = entry;
+      std::tie(column.role, column.rank, column.is_angular) =
+          std::tie(row.role, row.rank, row.is_angular);
+    }
+  }
+  column.is_lesser = std::ranges::any_of(PartsOf(kLesserWords, '|'),
+                                         [&](auto lesser) { return MatchEnd(lesser, words) > 0; });
+  column.other_words = CountWords(words) - std::min(CountWords(words), std::get<0>(best));
+}
+
+/// True for a text in brackets that can only be meant as a unit, though none that is known:
+/// "furlong" and "% FS", but neither "23.8 N" nor "in contact".
+bool MayBeUnit(std::string_view text) {
+  constexpr std::size_t kLongest = 12;
+  if (text.empty() || text.starts_with('%')) return !text.empty();
+  const bool begins = IsLetter(text.front()) || text.front() == '?' || text.front() == '&';
+  return begins && text.size() <= kLongest && text.find(' ') == text.npos &&
+         !Lists(kRemarks, LowerCase(text));
+}
+
+/// The text with the brackets, letters and signs of Chinese and Japanese fonts as those of ASCII.
+std::string WithNarrowLetters(std::string_view text) {
+  using boost::locale::conv::utf_to_utf;
+  const auto narrow = [](char32_t letter) {
+    constexpr char32_t kWide = 0xFEE0;  // from '!' to its wide sign, U+FF01
+    const bool is_wide = letter > kWide + ' ' && letter <= kWide + '~';
+    return letter == U'【' ? U'[' : letter == U'】' ? U']' : is_wide ? letter - kWide : letter;
+  };
+  std::u32string letters = utf_to_utf<char32_t>(text.data(), text.data() + text.size());
+  std::ranges::transform(letters, letters.begin(), narrow);
+  return utf_to_utf<char>(letters);
+}
+
+/// Takes a unit in brackets off a name: the last that is known, at the end also one that is not.
+void TakeUnitInBrackets(Column& column) {
+  const std::string plain = column.name;
+  for (std::size_t close = plain.find_last_of("])"); close != plain.npos && close > 0;
+       close = plain.find_last_of("])", close - 1)) {
+    const std::size_t open = plain.rfind(plain[close] == ']' ? '[' : '(', close);
+    if (open == plain.npos || open == 0) continue;
+    const std::string unit(Trimmed(std::string_view(plain).substr(open + 1, close - open - 1)));
+    const bool is_known = IsKnown(unit);
+    if (!is_known && (close + 1 < plain.size() || !MayBeUnit(unit))) continue;
+    column.unit = unit;
+    column.name = std::string(Trimmed(plain.substr(0, open))) + plain.substr(close + 1);
+    if (is_known) return;
+  }
+}
+
+/// Finds the longest last unit among the words of a name: any behind a comma or a slash, else one
+/// that suits the words before it; of a single letter the last word. It is taken off the end.
+void TakeUnitAmongWords(Column& column) {
+  constexpr std::string_view kSeparators = " _-.:=@|,;/<{[()]}>";
+  constexpr std::string_view kBehind = " _-.:=@|,;/<{[()]}>0123456789";  // "force_kN_1"
+  const std::string plain = column.name.substr(0, column.name.find_last_not_of(kBehind) + 1);
+  for (std::size_t end = plain.size(); end > 0; end = plain.find_last_of(kSeparators, end - 1)) {
+    if (end == plain.npos) return;
+    for (std::size_t at = plain.find_first_of(kSeparators, 1); at < end;
+         at = plain.find_first_of(kSeparators, at + 1)) {
+      std::string unit(Trimmed(std::string_view(plain).substr(at + 1, end - at - 1)));
+      std::ranges::replace(unit, '_', ' ');  // "torque_N_m"
+      Column rest{.name = plain.substr(0, plain.find_last_not_of(kSeparators, at) + 1)};
+      if (!IsKnown(unit) || LowerCase(unit) == "in" || rest.name.empty()) continue;
+      if (rest.name.ends_with(" in")) rest.name.resize(rest.name.size() - 3);
+      FindWord(rest);
+      const bool is_end = end == plain.size();
+      const bool is_long = CharactersIn(unit) > 1;
+      // "F_h" is a horizontal force, "F_rad" a radial one; "k_N" is nothing that is known.
+      const bool suits = rest.word.empty() ? is_end && is_long && FindUnit(unit)
+                                           : MayHaveRole(DimensionOf(unit), rest.role);
+      const bool is_marked = is_end && (plain[at] == ',' || plain[at] == '/');
+      if (!is_marked && !(suits && (is_end || is_long))) continue;
+      const std::size_t number = rest.name.find_last_not_of("0123456789.") + 1;
+      if (suits && IsDigit(rest.name.back()) && (number == 0 || !IsLetter(rest.name[number - 1]))) {
+        // "5 kN" is none; "23.8 N" is in the unit that would be assumed.
+        if (FindUnit(unit)->ToSi(1) != 1) column.unit = plain.substr(number, end - number);
+        return;
+      }
+      column.unit = unit;
+      // "F_N" is perhaps the normal force.
+      if (is_end && (LowerCase(rest.name) != "f" || unit != "N")) column.name = rest.name;
+      return;
+    }
+  }
+}
+
+/// Gives a name with a factor, or of a ratio, a unit that is none.
+void RequireUnit(Column& column) {
+  std::string lower = LowerCase(column.name);
+  std::ranges::replace(lower, '(', ' ');
+  for (const std::string_view part : kNoUnits) {
+    const bool is_ratio = IsSmall(part.back());
+    const std::size_t found = lower.find(part);
+    // A name may begin with what would be a factor behind it: "x10 [mm]".
+    if (found == lower.npos || (is_ratio ? !column.unit.empty() : found == 0)) continue;
+    const std::size_t at = lower.find_first_not_of(' ', found);
+    const std::string_view rest =
+        is_ratio ? Trimmed(part) : std::string_view(column.name).substr(at);
+    column.unit += column.unit.empty() ? "" : " ";
+    column.unit += rest.substr(0, rest.find_first_of(")]"));
+    return;
+  }
+}
+
+/// Describes how numbers behave.
+void Observe(const std::vector<double>& values, Column& column) {
+  constexpr double kGoodPart = 0.4;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  double rise = 0.0;
+  double fall = 0.0;
+  std::size_t numbers = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (numbers++ == 0) column.first = value;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+    rise = std::max(rise, value - least);
+    fall = std::max(fall, greatest - value);
+  }
+  column.is_numeric = !values.empty() && 2 * numbers >= values.size();
+  column.least = least;
+  column.greatest = greatest;
+  column.trend = int{rise > 0 && fall == 0} - int{fall > 0 && rise == 0};
+  column.goes_to_and_fro =
+      greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least);
+}
+
+}  // namespace
+
+const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
+
+std::optional<Dimension> DimensionOf(std::string_view symbol) {
+  const std::optional<Unit> unit = FindUnit(symbol);
+  return unit ? std::optional(unit->dimension) : std::nullopt;
+}
+
+bool MayHaveRole(std::optional<Dimension> dimension, Role role) {
+  const bool is_role = role <= Role::kNormalLoad;
+  return is_role && dimension &&
+         (*dimension == RulesOf(role).linear || *dimension == RulesOf(role).angular);
+}
+
+std::optional<bool> Column::IsAngular(std::string_view given_unit) const {
+  const auto of_unit = given_unit.empty() ? dimension : DimensionOf(given_unit);
+  if (of_unit == Dimension::kAngle || of_unit == Dimension::kTorque) return true;
+  if (of_unit == Dimension::kLength || of_unit == Dimension::kForce) return false;
+  return is_angular ? std::optional(true) : std::nullopt;
+}
+
+Column ReadName(std::string_view header) {
+  Column column{.name = WithNarrowLetters(Trimmed(header))};
+  std::string& name = column.name;
+  name.resize(std::min(name.find(" PI: "), name.size()));  // of Abaqus: a label of a point
+  TakeUnitInBrackets(column);
+  if (column.unit.empty()) TakeUnitAmongWords(column);
+  RequireUnit(column);
+  FindWord(column);
+  return column;
+}
+
+std::string_view WithoutBrackets(std::string_view cell) {
+  cell = Trimmed(cell);
+  const bool bracketed = cell.size() >= 2 && ((cell.front() == '[' && cell.back() == ']') ||
+                                              (cell.front() == '(' && cell.back() == ')'));
+  return bracketed ? Trimmed(cell.substr(1, cell.size() - 2)) : cell;
+}
+
+bool LooksLikeUnit(std::string_view cell) {
+  const std::string_view symbol = WithoutBrackets(cell);
+  return IsKnown(symbol) || (symbol.size() != Trimmed(cell).size() && MayBeUnit(symbol));
+}
+
+std::size_t CountKnownWords(std::span<const std::string> cells) {
+  return static_cast<std::size_t>(std::ranges::count_if(cells, [](const std::string& cell) {
+    const Column column = ReadName(cell);
+    return !column.unit.empty() || !column.word.empty();
+  }));
+}
+
+Columns::Columns(const CsvTable& table) : table_(table) {
+  reserve(table.columns.size());
+  for (const TableColumn& of : table.columns) {
+    Column& added = emplace_back(ReadName(of.name));
+    Observe(of.values, added);
+    if (added.unit.empty()) added.unit = WithoutBrackets(of.unit);
+    // "millis"
+    const bool is_unit = added.names(Role::kTime) && DimensionOf(added.name) == Dimension::kTime;
+    if (added.unit.empty() && is_unit) added.unit = added.name;
+    added.dimension = DimensionOf(added.unit);
+    added.is_clock = of.is_clock;
+  }
+}
+
+std::optional<std::size_t> Columns::Named(std::string_view name, Role role) const {
+  const std::string lower = LowerCase(name);
+  for (const bool exactly : {true, false}) {
+    std::optional<std::size_t> found;
+    for (std::size_t column = 0; column < size() && !name.empty(); ++column) {
+      const std::string& full = table_.columns[column].name;
+      const bool is_one =
+          exactly ? full == name : LowerCase(full) == lower || LowerCase(at(column).name) == lower;
+      if (is_one && found) ThrowAmbiguous(role, *found, column);
+      if (is_one) found = column;
+    }
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
+std::string Columns::UnitOf(std::size_t column, Role role) const {
+  const std::string& unit = at(column).unit;
+  const std::string_view of_row = WithoutBrackets(table_.columns[column].unit);
+  if (of_row.empty() || of_row == unit) return unit;
+  Refuse(
+      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit with {} '{} [{}]'",
+      Header(), Label(column), unit, of_row, RulesOf(role).option, column + 1, unit);
+}
+
+std::string Columns::Label(std::size_t column) const {
+  const std::string& name = table_.columns[column].name;
+  if (table_.header_line == 0 || name.empty()) return fmt::format("column {}", column + 1);
+  return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
+}
+
+std::string Columns::Listing() const {
+  if (std::ranges::all_of(table_.columns, [](auto& column) { return column.name.empty(); })) {
+    return fmt::format("the file names none of its {} columns", size());
+  }
+  std::vector<std::string> listed;
+  for (const TableColumn& column : table_.columns) {
+    listed.push_back(fmt::format("'{}' ({})", ForMessage(column.name), listed.size() + 1));
+  }
+  return fmt::format("the columns are {}", fmt::join(listed, ", "));
+}
+
+std::string Columns::Header() const {
+  return fmt::format("{}:{}", table_.file, table_.header_line);
+}
+
+void Columns::ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const {
+  Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
+         Label(one), Label(other), RulesOf(role).name, RulesOf(role).option, one + 1);
+}
+
+}  // namespace mindahl::io

@@ -1,0 +1,508 @@
+#include "io/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "core/text.h"
+#include "io/columns.h"
+#include "io/source.h"
+
+namespace mindahl::io {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+constexpr double kBroken = std::numeric_limits<double>::infinity();
+
+bool IsNumeric(Cell::Kind kind) {
+  return kind == Cell::Kind::kNumber || kind == Cell::Kind::kClock;
+}
+
+/// A row of a text, and its cells under some delimiter.
+struct Row {
+  std::string_view text = {};
+  std::size_t line = 0;
+  std::size_t offset = 0;
+  Strings cells = {};
+  std::vector<Cell::Kind> kinds = {};
+  std::size_t numbers = 0, texts = 0;
+  std::size_t filled = 0;   // number of cells, empty ones at the end aside
+  std::size_t columns = 0;  // number of cells, one trailing delimiter aside
+
+  /// @returns false where it has no cell with a content
+  bool ReadCells(char delimiter) {
+    CellCursor cursor(text, delimiter);
+    while (cursor.has_next()) {
+      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter).kind);
+      numbers += IsNumeric(kinds.back()) ? 1 : 0;
+      texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
+      if (!cells.back().empty()) filled = cells.size();
+    }
+    columns = cells.size() > 1 && cells.back().empty() ? cells.size() - 1 : cells.size();
+    return filled > 0;
+  }
+  /// Looks like data whatever the other rows are: "sample_rate,200" does not, "1,2" does.
+  [[nodiscard]] bool HasData() const {
+    const auto empty = static_cast<std::size_t>(std::ranges::count(cells, std::string()));
+    return numbers >= 1 && (IsNumeric(kinds.front()) || cells.size() - texts - empty >= 2);
+  }
+  /// Returns that many names of a header between blanks: words, each with what is in brackets
+  /// behind it, or what two blanks or a tab separate.
+  [[nodiscard]] std::optional<Strings> NamesByBlanks(std::size_t number) const {
+    Strings names;
+    for (const std::string& word : cells) {
+      if (names.empty() && (word == "%" || word == "//")) continue;  // the mark of a comment
+      const bool is_within = !names.empty() && names.back().find_first_of("[(") != text.npos &&
+                             names.back().find_first_of("])") == text.npos;
+      if (!names.empty() && (is_within || word.starts_with('[') || word.starts_with('('))) {
+        names.back() += ' ' + word;
+      } else {
+        names.push_back(word);
+      }
+    }
+    if (names.size() == number) return names;
+    names.clear();
+    for (std::string_view rest = Trimmed(text); !rest.empty(); rest = Trimmed(rest)) {
+      const std::size_t end = std::min({rest.find("  "), rest.find('\t'), rest.size()});
+      names.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(end);
+    }
+    return names.size() == number ? std::optional(names) : std::nullopt;
+  }
+};
+
+bool IsUnitsRow(std::span<const std::string> cells) {
+  const auto units = std::ranges::count_if(cells, LooksLikeUnit);
+  return units > 0 && 2 * units + std::ranges::count(cells, std::string()) >= std::ssize(cells);
+}
+
+/// The first rows of a text under one delimiter, and how well it explains them as columns of
+/// numbers.
+class Reading {
+ public:
+  Reading(std::span<const Row> sampled, const std::string& file, char delimiter)
+      : layout_{.header = {.file = file}, .delimiter = delimiter} {
+    std::map<std::size_t, std::size_t> rows_with_columns;
+    for (Row row : sampled) {
+      if (!row.ReadCells(delimiter)) continue;
+      if (row.HasData()) ++rows_with_columns[row.columns];
+      rows_.push_back(std::move(row));
+    }
+    std::size_t most_rows = 0;
+    for (const auto& [columns, rows] : rows_with_columns) {
+      if (rows < most_rows) continue;
+      most_rows = rows;
+      columns_ = columns;
+    }
+    std::vector<std::size_t> numbers;
+    for (const Row& row : rows_) {
+      if (!row.HasData()) continue;
+      numbers.resize(std::max(numbers.size(), row.kinds.size()));
+      layout_.holds_numbers.resize(numbers.size());
+      for (std::size_t column = 0; column < row.kinds.size(); ++column) {
+        const Cell::Kind kind = row.kinds[column];
+        if (IsNumeric(kind)) ++numbers[column];
+        if (IsNumeric(kind) || kind == Cell::Kind::kBroken) layout_.holds_numbers[column] = true;
+      }
+      if (row.columns != columns_) continue;
+      score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
+    }
+    for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
+  }
+
+  /// Returns how well it explains the rows; without a row of data, how many cells it finds.
+  [[nodiscard]] std::pair<bool, long> rank() const {
+    const auto cells = static_cast<long>(rows_.empty() ? 0 : rows_.back().columns);
+    return {columns_ > 0, columns_ > 0 ? score_ : cells};
+  }
+
+  /// Finds the data and the header above them, which may be a comment.
+  Layout Find(const Row& comment) && {
+    const std::string& file = layout_.header.file;
+    if (rows_.empty()) Refuse("{}: holds no data, only blank or '#' lines", file);
+    if (columns_ == 0) {
+      // The first row that cannot be a header stands for the file.
+      const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
+      const Row& row = data == rows_.end() ? rows_.back() : *data;
+      if (data == rows_.end() && rows_.size() == 1) {
+        Refuse(
+            "{}:{}: the file ends after its header, with no row of numbers below it: export the "
+            "data too",
+            file, row.line);
+      }
+      Refuse(
+          "{}:{}: none of the first {} rows has numbers, nor has '{}': expected columns of numbers "
+          "under an optional header, between tabs, ';', blanks, or commas where these are no "
+          "decimal marks",
+          file, row.line, rows_.size(), ForMessage(row.text));
+    }
+    FindData();
+    FindNames();
+    if (data_ == 0) FindNamesIn(comment);
+    std::vector<TableColumn>& columns = layout_.header.columns;
+    columns.resize(std::max({columns_, names_.size(), units_.size()}));
+    layout_.holds_numbers.resize(columns.size());
+    layout_.mostly_numbers.resize(columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (k < names_.size()) columns[k].name = names_[k];
+      if (k < units_.size()) columns[k].unit = units_[k];
+      // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+      const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
+      if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
+        columns[k - 1].unit = columns[k].name;
+      }
+    }
+    return std::move(layout_);
+  }
+
+ private:
+  /// Finds the first row of data: with as many cells as most have, and no text among numbers.
+  void FindData() {
+    // A header of LabVIEW has rows of numbers, and states their interval in place of times.
+    const auto names =
+        std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
+    const bool is_labview = names != rows_.end();
+    for (auto row = is_labview ? names : rows_.begin(); row != rows_.end(); ++row) {
+      // A trailing delimiter, or empty cells at the end, leave the number of columns open.
+      const bool fits = row->filled <= columns_ && columns_ <= row->cells.size();
+      bool is_data = fits && row->HasData();
+      for (std::size_t column = 0; column < row->kinds.size() && is_data; ++column) {
+        is_data = !layout_.mostly_numbers[column] || row->kinds[column] != Cell::Kind::kText;
+      }
+      if (!is_data) continue;
+      data_ = static_cast<std::size_t>(row - rows_.begin());
+      break;  // else text is in every row, each time in another column
+    }
+    layout_.data_offset = rows_[data_].offset;
+    layout_.data_line = rows_[data_].line;
+    for (const Row& row : std::span(rows_).first(data_)) {
+      if (!is_labview || layout_.mostly_numbers[0] || row.cells.size() < 2) continue;
+      if (row.cells[0] != "Delta_X") continue;
+      const double step = ReadCell(row.cells[1], layout_.delimiter).value;
+      if (step > 0) layout_.header.interval = step;
+    }
+  }
+
+  /// Returns the cells of a row of text, one for each column of the data; nullopt when it is not
+  /// that.
+  std::optional<Strings> HeaderCells(const Row& row) const {
+    const bool by_blanks = layout_.delimiter == kBlanks;
+    // "Load 1" between blanks is words, of which few are numbers.
+    const bool is_text = row.numbers == 0 && row.texts >= 1;
+    const bool is_sentence =
+        by_blanks && row.kinds.front() == Cell::Kind::kText && 2 * row.numbers < row.kinds.size();
+    if (!is_text && !is_sentence) return std::nullopt;
+    // Rows may lack the last column, as that of comments or events.
+    const std::size_t columns = std::max(row.filled, rows_[data_].filled);
+    const std::size_t most = columns_ + (by_blanks ? 0 : 1);
+    if (is_text && columns <= row.cells.size() && columns <= most) {
+      return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
+    }
+    return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
+  }
+
+  /// True for cells that name every column that mostly holds numbers.
+  bool NamesColumns(const Strings& cells) const {
+    for (std::size_t column = 0; column < layout_.mostly_numbers.size(); ++column) {
+      const bool is_named = column < cells.size() && !cells[column].empty();
+      if (layout_.mostly_numbers[column] && !is_named) return false;
+    }
+    return true;
+  }
+
+  /// Looks for names and units: the row above the data, or, where that is no header or one of
+  /// units, the nearest row above with a name for every column of which two are known.
+  void FindNames() {
+    std::size_t header = data_;
+    bool are_known = false;
+    for (std::size_t k = data_; k-- > 0;) {
+      const Row& row = rows_[k];
+      const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
+      if (names_.empty() && may_be_data) break;
+      auto cells = HeaderCells(row);
+      if (!cells) continue;
+      if (IsUnitsRow(*cells)) {
+        const bool says_so = LowerCase(cells->front()).find("unit") != std::string::npos;
+        // Units may stand above the names.
+        const bool are_above = k + 1 == header && std::ranges::all_of(*cells, LooksLikeUnit);
+        if (!units_.empty() || !(names_.empty() || says_so || are_above)) continue;
+        if (says_so) cells->front().clear();
+        if (names_.empty()) header = k;
+        units_ = *std::move(cells);
+        layout_.units_row = row.text;
+        continue;
+      }
+      const bool is_adjacent = names_.empty() && (k + 1 == data_ || k + 1 == header);
+      const std::size_t known = CountKnownWords(*cells);
+      if (are_known || !(is_adjacent || (known >= 2 && NamesColumns(*cells)))) continue;
+      are_known = known > 0;
+      header = k;
+      names_ = *std::move(cells);
+      layout_.names_row = row.text;
+    }
+    if (names_.empty() && !std::ranges::all_of(units_, LooksLikeUnit)) {
+      names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
+      layout_.names_row = std::exchange(layout_.units_row, {});
+    }
+    if (data_ == 0) return;
+    const std::string& file = layout_.header.file;
+    for (const Row& row : std::span(rows_).first(data_)) {
+      if (!row.cells.back().starts_with('"')) continue;
+      Refuse("{}:{}: a quotation mark opened here is never closed in its line", file, row.line);
+    }
+    layout_.header.header_line = rows_[header].line;
+    if (header < data_) return;
+    const Row& row = rows_[data_ - 1];
+    Refuse(
+        "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
+        "every column, or begin the line with '#' if it is a comment{}",
+        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s", rows_[data_].line,
+        layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
+            ? "; or leave out commas that separate thousands or are decimal marks"
+            : "");
+  }
+
+  /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
+  void FindNamesIn(Row comment) {
+    comment.text.remove_prefix(std::min(comment.text.find('#') + 1, comment.text.size()));
+    if (!comment.ReadCells(layout_.delimiter)) return;
+    auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
+                                                  : comment.NamesByBlanks(columns_);
+    if (!cells || CountKnownWords(*cells) < 2) return;
+    names_ = *std::move(cells);
+    layout_.header.header_line = comment.line;
+  }
+
+  Layout layout_;
+  Strings names_, units_;  // one a column, or none
+  std::vector<Row> rows_;
+  std::size_t columns_ = 0;  ///< number in most rows with data
+  long score_ = 0;           ///< numbers less broken numbers in the rows with so many columns
+  std::size_t data_ = 0;     // index of the first data row
+};
+
+}  // namespace
+
+std::span<const double> CsvTable::Numbers(std::size_t column) const {
+  const TableColumn& of = columns.at(column);
+  if (of.values.empty()) {
+    Refuse("{}:{}:{}: '{}' (column {}) holds no numbers", file,
+           lines.empty() ? header_line : lines.front(), column + 1, ForMessage(of.name),
+           column + 1);
+  }
+  if (!of.broken.empty()) throw InputError(of.broken);
+  if (!of.missing.empty()) throw InputError(of.missing);
+  return of.values;
+}
+
+Layout FindLayout(std::string_view text, const std::string& file) {
+  constexpr std::size_t kSampledRows = 1000;  // at most so many are above the data
+  std::vector<Row> sampled;
+  Row comment;  // the last above all rows, where a header may stand
+  std::size_t line = 0;
+  for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
+    Row row{.line = ++line, .offset = text.size() - rest.size()};
+    row.text = TakeLine(rest);
+    if (!IsBlankOrComment(row.text)) {
+      sampled.push_back(std::move(row));
+    } else if (sampled.empty() && !Trimmed(row.text).empty()) {
+      comment = std::move(row);
+    }
+  }
+  std::optional<Reading> best;
+  // A tie goes to the first: a cell may contain what comes after it in this list.
+  for (const char delimiter : {'\t', ';', ',', kBlanks}) {
+    Reading reading(sampled, file, delimiter);
+    if (!best || reading.rank() > best->rank()) best = std::move(reading);
+  }
+  return std::move(*best).Find(comment);
+}
+
+TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& wanted)
+    : layout_(layout),
+      table_(layout.header),
+      is_wanted_(wanted.empty() ? layout.holds_numbers
+                                : std::vector<bool>(layout.header.columns.size())),
+      values_(is_wanted_.size()),
+      faults_(is_wanted_.size()),
+      line_(layout.data_line - 1) {
+  for (const std::size_t column : wanted) is_wanted_[column] = true;
+}
+
+void TableReader::Clear() {
+  table_.lines.clear();
+  table_.blocks.clear();
+  for (TableColumn& column : table_.columns) {
+    column.values.clear();
+    column.broken.clear();
+    column.missing.clear();
+  }
+}
+
+std::string TableReader::At(std::size_t column, std::string_view fault) const {
+  return fmt::format("{}:{}:{}: {}", table_.file, row_line_, column + 1, fault);
+}
+
+void TableReader::Read(std::string_view text) {
+  while (!text.empty()) {
+    row_line_ = ++line_;
+    const std::string_view row = TakeLine(text);
+    const bool may_be_none = row.empty() || row.front() <= '#';  // a blank is below '#'
+    if (!may_be_none || !IsBlankOrComment(row)) ReadRow(row);
+  }
+}
+
+void TableReader::ReadRow(std::string_view row) {
+  CellCursor cells(row, layout_.delimiter);
+  bool has_content = false;
+  bool is_whole = true;
+  std::size_t count = 0;
+  for (; count < values_.size() && cells.has_next(); ++count) {
+    if (!is_wanted_[count]) {
+      has_content = !cells.Take().empty() || has_content;
+      continue;
+    }
+    const std::string_view number =
+        mark_ == ',' ? std::string_view() : cells.TakeNumber(values_[count]);
+    if (number.empty()) {
+      const std::string_view text = cells.Take();
+      has_content = has_content || !text.empty();
+      ReadText(count, text);
+      is_whole = is_whole && std::isfinite(values_[count]);
+    } else {
+      has_content = true;
+      if (mark_ == '\0' && number.find('.') != number.npos) NoteMark('.');
+    }
+  }
+  std::string fault;  // of the row
+  const std::size_t columns = values_.size();
+  for (std::size_t column = count; cells.has_next(); ++column) {
+    const std::string_view text = cells.Take();
+    if (text.empty() || !fault.empty()) continue;
+    fault =
+        At(column, fmt::format("'{}' is one cell too many: the table has {} column{}{}",
+                               ForMessage(text), columns, columns == 1 ? "" : "s",
+                               layout_.delimiter == ','
+                                   ? "; leave out commas that separate thousands, and separate the "
+                                     "columns by ';' or tabs where commas are decimal marks"
+                                   : ""));
+  }
+  if (cells.is_open()) {
+    fault = fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
+                        table_.file, row_line_);
+  } else if (!has_content && fault.empty()) {
+    return;
+  }
+  for (std::size_t missing = count; missing < columns; ++missing) {
+    if (!is_wanted_[missing]) continue;
+    is_whole = false;
+    values_[missing] = kBroken;
+    faults_[missing] =
+        At(missing, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
+                                count == 1 ? "" : "s", columns));
+  }
+  if ((!is_whole || !fault.empty()) && !cells.is_open() && BelongsToHeader(row)) return;
+  EndGap();
+  if (!fault.empty()) return AddFaulty(row_line_, fault);
+  table_.lines.push_back(row_line_);
+  for (std::size_t k = 0; k < columns; ++k) {
+    if (!is_wanted_[k]) continue;
+    TableColumn& column = table_.columns[k];
+    column.values.push_back(values_[k]);
+    if (is_whole || std::isfinite(values_[k])) continue;
+    std::string& first = std::isnan(values_[k]) ? column.missing : column.broken;
+    if (first.empty()) first = faults_[k];
+  }
+}
+
+void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
+  table_.lines.push_back(line);
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    if (!is_wanted_[k]) continue;
+    table_.columns[k].values.push_back(kBroken);
+    if (table_.columns[k].broken.empty()) table_.columns[k].broken = fault;
+  }
+}
+
+/// Reads a cell that is not plainly a number.
+void TableReader::ReadText(std::size_t column, std::string_view text) {
+  const Cell cell = ReadCell(text, layout_.delimiter);
+  TableColumn& of = table_.columns[column];
+  double& value = values_[column] = cell.value;
+  if (cell.kind == Cell::Kind::kClock) {
+    of.is_clock = true;
+  } else if (cell.kind != Cell::Kind::kNumber) {
+    const bool is_missing = cell.kind == Cell::Kind::kMissing;
+    if (!is_missing) value = kBroken;
+    // A message describes the first cell of a column that is missing or broken.
+    const bool is_first = (is_missing ? of.missing : of.broken).empty();
+    if (is_first) faults_[column] = At(column, DescribeCellFault(text, cell.kind));
+  } else if (cell.decimal_mark != '\0') {
+    NoteMark(cell.decimal_mark);
+    if (cell.decimal_mark == mark_) return;
+    value = kBroken;
+    faults_[column] =
+        At(column, fmt::format("'{}' has the decimal mark '{}' and line {} has '{}': use one "
+                               "throughout",
+                               ForMessage(text), cell.decimal_mark, mark_line_, mark_));
+  }
+}
+
+/// True for a row of text that repeats the header, or may be above a header that is repeated.
+bool TableReader::BelongsToHeader(std::string_view row) {
+  const std::string_view text = Trimmed(row);
+  if ((!layout_.names_row.empty() && text == Trimmed(layout_.names_row)) ||
+      (gap_ && gap_->fault.empty() && text == Trimmed(layout_.units_row))) {
+    gap_ = {row_line_, ""};
+    return true;
+  }
+  // Its first column of numbers has a text.
+  const auto first = std::ranges::find(layout_.mostly_numbers, true);
+  const auto column = static_cast<std::size_t>(first - layout_.mostly_numbers.begin());
+  CellCursor cells(row, layout_.delimiter);
+  for (std::size_t k = 0; k < column && cells.has_next(); ++k) cells.Take();
+  const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
+  const bool is_text = ReadCell(cell, layout_.delimiter).kind == Cell::Kind::kText;
+  if (first == layout_.mostly_numbers.end() || !is_text) return false;
+  if (gap_ && !gap_->fault.empty()) return true;
+  gap_ = {row_line_, At(column, DescribeCellFault(cell, Cell::Kind::kText))};
+  if (!layout_.names_row.empty()) {
+    gap_->fault += fmt::format(
+        "; a further block of rows must have the columns of line {} above it", table_.header_line);
+  }
+  return true;
+}
+
+/// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
+void TableReader::EndGap() {
+  if (gap_ && gap_->fault.empty()) table_.blocks.push_back(table_.rows());
+  if (gap_ && !gap_->fault.empty()) AddFaulty(gap_->line, gap_->fault);
+  gap_.reset();
+}
+
+CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding) {
+  const std::string name = NameOfInput(path);
+  LinePieces pieces(path, encoding);
+  std::string_view text = pieces.Next();
+  const Layout layout = FindLayout(text, name);
+  TableReader reader(layout);
+  for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
+    reader.Read(text);
+  }
+  reader.Finish();
+  CsvTable table = std::move(reader.table());
+  if (!table.blocks.empty()) {
+    table.notes.push_back(
+        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
+                    table.header_line, table.blocks.size()));
+  }
+  if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
+  return table;
+}
+
+}  // namespace mindahl::io
