@@ -349,34 +349,35 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
 }
 
 void TableReader::Read(std::string_view text) {
+  const std::string no_content = {layout_.delimiter, ' ', '\t', '\r'};
   while (!text.empty()) {
     row_line_ = ++line_;
     const std::string_view row = TakeLine(text);
-    const bool may_be_none = row.empty() || row.front() <= '#';  // a blank is below '#'
-    if (!may_be_none || !IsBlankOrComment(row)) ReadRow(row);
+    // Most begin with a digit or a sign; a blank is below '#'.
+    const bool may_be_none = row.empty() || row.front() <= '#' || row.front() == layout_.delimiter;
+    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
+      continue;
+    }
+    ReadRow(row);
   }
 }
 
 void TableReader::ReadRow(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
-  bool has_content = false;
   bool is_whole = true;
   std::size_t count = 0;
   for (; count < values_.size() && cells.has_next(); ++count) {
     if (!is_wanted_[count]) {
-      has_content = !cells.Take().empty() || has_content;
+      cells.Take();
       continue;
     }
     const std::string_view number =
         mark_ == ',' ? std::string_view() : cells.TakeNumber(values_[count]);
     if (number.empty()) {
-      const std::string_view text = cells.Take();
-      has_content = has_content || !text.empty();
-      ReadText(count, text);
+      ReadText(count, cells.Take());
       is_whole = is_whole && std::isfinite(values_[count]);
-    } else {
-      has_content = true;
-      if (mark_ == '\0' && number.find('.') != number.npos) NoteMark('.');
+    } else if (mark_ == '\0' && number.find('.') != number.npos) {
+      NoteMark('.');
     }
   }
   std::string fault;  // of the row
@@ -395,8 +396,6 @@ void TableReader::ReadRow(std::string_view row) {
   if (cells.is_open()) {
     fault = fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
                         table_.file, row_line_);
-  } else if (!has_content && fault.empty()) {
-    return;
   }
   for (std::size_t missing = count; missing < columns; ++missing) {
     if (!is_wanted_[missing]) continue;

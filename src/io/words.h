@@ -21,22 +21,21 @@ inline constexpr std::array kWords = {
             "tangential displacement|relative displacement|slip displacement|sliding displacement"},
     WordRow{Role::kDisplacement, 1, false,
             "displacement|disp|displ|extensometer|*wegaufnehmer|*verschiebung|déplacement|"
-            "deplacement|desplazamiento|"
-            "spostamento|deslocamento|位移|変位"},
+            "deplacement|desplazamiento|spostamento|deslocamento|位移|変位"},
     WordRow{Role::kDisplacement, 2, false,
             "position|pos|travel|stroke|extension|lvdt|deflection|elongation|crosshead|qpos|*weg|"
             "*auslenkung|*hub|course|allongement|posición|posicion|carrera|recorrido|posizione|"
             "corsa|posição|posicao|curso|行程|位置|变形|伸び|ストローク"},
     WordRow{Role::kDisplacement, 3, false, "x|X|d|u|U|delta|δ|Δ|ux|uy|dx"},
     WordRow{Role::kDisplacement, 4, true,
-            "angle|rotation|twist|theta|θ|phi|φ|q|winkel|drehwinkel|ángulo|angulo|angolo|角度|转角|"
-            "回転角"},
+            "angle|rotation|twist|theta|θ|phi|φ|q|winkel|drehwinkel|ángulo|angulo|angolo|角度|"
+            "转角|回転角"},
     WordRow{Role::kForce, 0, false,
             "tangential force|friction force|lateral force|shear force|frictional force|"
             "tangentialkraft|reibkraft|reibungskraft|querkraft|force tangentielle|"
             "effort tangentiel|force de frottement|fuerza de fricción|fuerza tangencial|"
-            "forza di attrito|forza tangenziale|força de atrito|força "
-            "tangencial|摩擦力|切向力|接線力|せん断力"},
+            "forza di attrito|forza tangenziale|força de atrito|força tangencial|摩擦力|切向力|"
+            "接線力|せん断力"},
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
             "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重|loadcell|ロードセル"},
@@ -46,42 +45,37 @@ inline constexpr std::array kWords = {
     WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},
     WordRow{Role::kForce, 4, false, "F|f|Q|P"},
     WordRow{Role::kForce, 5, false, "T"},
-    WordRow{
-        Role::kTime, 0, false,
-        "time|timestamp|time stamp|elapsed|*zeit|zeitstempel|temps|tiempo|tempo|时间|時間|時刻"},
-    WordRow{
-        Role::kTime, 1, false,
-        "t|ms|millis|micros|nanos|seconds|secs|sec|msec|stamp|clock|datetime|date|datum|uhrzeit|"
-        "fecha|hora|heure"},
+    WordRow{Role::kTime, 0, false,
+            "time|timestamp|time stamp|elapsed|*zeit|zeitstempel|temps|tiempo|tempo|时间|時間|"
+            "時刻"},
+    WordRow{Role::kTime, 1, false,
+            "t|ms|millis|micros|nanos|seconds|secs|sec|msec|stamp|clock|datetime|date|datum|"
+            "uhrzeit|fecha|hora|heure"},
     WordRow{Role::kTime, 2, false, "x value"},
     WordRow{Role::kNormalLoad, 0, false,
-            "normal load|normal force|*normalkraft|*anpresskraft|*anpreßkraft|charge normale|force "
-            "normale|effort normal|"
-            "fuerza normal|carga normal|forza normale|carico normale|força normal|法向力|"
-            "法向载荷|法向荷载|正压力|垂直力|垂直荷重|押付力|押付け力|clamp force|clamping force|"
-            "clamp load|clamping load|*klemmkraft|*vorspannkraft"},
+            "normal load|normal force|*normalkraft|*anpresskraft|*anpreßkraft|charge normale|"
+            "force normale|effort normal|fuerza normal|carga normal|forza normale|carico normale|"
+            "força normal|法向力|法向载荷|法向荷载|正压力|垂直力|垂直荷重|押付力|押付け力|"
+            "clamp force|clamping force|clamp load|clamping load|*klemmkraft|*vorspannkraft"},
     WordRow{Role::kNormalLoad, 1, false, "normal|n load|normallast"},
     WordRow{Role::kNormalLoad, 2, false, "fn|f n|N"},
-    WordRow{
-        Role::kOther, 0, false,
-        "cycle|cycles|count|counts|counter|index|idx|sample|samples|step|steps|row|no|nr|seq|"
-        "id|block|segment|point|*zyklus|*zyklen|*zähler|compteur|ciclo|ciclos|cicli|"
-        "cycle count|step "
-        "time|recuento|n|#|序号|循环|周期|サイクル|番号|velocity|speed|vel|v|dq|qd|qvel|"
-        "rate|acceleration|accel|acc|*geschwindigkeit|vitesse|velocidad|velocità|velocidade|"
-        "速度|加速度|*beschleunigung|temperature|temp|*temperatur|température|temperatura|voltage|"
-        "pressure|*druck|strain|stress|*dehnung|*spannung|energy|work|power|frequency|"
-        "humidity|温度|压力|current|strom|stiffness|tangential stiffness|contact stiffness|"
-        "secant stiffness|tangent stiffness|compliance|contact compliance"},
-    WordRow{
-        Role::kFrictionCoefficient, 0, false,
-        "coefficient of friction|friction coefficient|coef of friction|coeff of friction|friction "
-        "coeff|q p|ft fn|"
-        "cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|*reibkoeffizient|*"
-        "reibungskoeffizient|"
-        "coefficient de frottement|coeficiente de fricción|coeficiente de friccion|"
-        "coeficiente de rozamiento|coeficiente de atrito|coefficiente di "
-        "attrito|摩擦系数|摩擦係数|коэффициент трения|마찰계수"},
+    WordRow{Role::kOther, 0, false,
+            "cycle|cycles|count|counts|counter|index|idx|sample|samples|step|steps|row|no|nr|seq|"
+            "id|block|segment|point|*zyklus|*zyklen|*zähler|compteur|ciclo|ciclos|cicli|"
+            "cycle count|step time|recuento|n|#|序号|循环|周期|サイクル|番号|velocity|speed|vel|"
+            "v|dq|qd|qvel|rate|acceleration|accel|acc|*geschwindigkeit|vitesse|velocidad|"
+            "velocità|velocidade|速度|加速度|*beschleunigung|temperature|temp|*temperatur|"
+            "température|temperatura|voltage|pressure|*druck|strain|stress|*dehnung|*spannung|"
+            "energy|work|power|frequency|humidity|温度|压力|current|strom|stiffness|"
+            "tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
+            "compliance|contact compliance"},
+    WordRow{Role::kFrictionCoefficient, 0, false,
+            "coefficient of friction|friction coefficient|coef of friction|coeff of friction|"
+            "friction coeff|q p|ft fn|cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|"
+            "*reibkoeffizient|*reibungskoeffizient|coefficient de frottement|"
+            "coeficiente de fricción|coeficiente de friccion|coeficiente de rozamiento|"
+            "coeficiente de atrito|coefficiente di attrito|摩擦系数|摩擦係数|коэффициент трения|"
+            "마찰계수"},
     WordRow{Role::kOther, 1, false, "kt|k|K"},
 };
 
