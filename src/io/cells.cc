@@ -109,34 +109,25 @@ std::string_view CellCursor::Take() {
 
 Cell ReadCell(std::string_view text, char delimiter) {
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
-  std::string_view digits = text;
-  const bool negative = digits.front() == '-';
-  if (negative || digits.front() == '+') digits.remove_prefix(1);
-  const std::size_t first = digits.starts_with('.') ? 1 : 0;
-  if (digits.size() <= first || !IsDigit(digits[first])) return {};
-  char mark = digits.find('.') == std::string_view::npos ? '\0' : '.';
-  std::string with_point;
-  std::string_view plain = digits;
-  if (const std::size_t comma = mark == '\0' && delimiter != ',' ? digits.find(',') : digits.npos;
-      comma < digits.size() - 1 && IsDigit(digits[comma + 1])) {
+  std::string plain(text.substr(text.front() == '+' ? 1 : 0));
+  std::size_t digit = text.front() == '-' ? 1 : 0;
+  if (plain.size() > digit && plain[digit] == '.') ++digit;
+  if (plain.size() <= digit || !IsDigit(plain[digit])) return {};
+  char mark = plain.find('.') == plain.npos ? '\0' : '.';
+  const std::size_t comma = mark == '\0' && delimiter != ',' ? plain.find(',') : plain.npos;
+  if (comma < plain.size() - 1 && IsDigit(plain[comma + 1])) {
+    plain[comma] = '.';
     mark = ',';
-    with_point = digits;
-    with_point[comma] = '.';
-    plain = with_point;
   }
+  double value = 0.0;
   const char* const end = plain.data() + plain.size();
-  double magnitude = 0.0;
-  // NOLINTNEXTLINE(bugprone-suspicious-stringview-data-usage): the end is given
-  const auto [stop, error] = std::from_chars(plain.data(), end, magnitude);
+  const auto [stop, error] = std::from_chars(plain.data(), end, value);
   // from_chars does not say on which side a number is out of range; only a negative exponent can
   // make one too small.
   const bool is_beyond = error == std::errc::result_out_of_range;
-  const bool is_small = is_beyond && LowerCase(digits).find("e-") != std::string::npos;
+  const bool is_small = is_beyond && LowerCase(plain).find("e-") != plain.npos;
   if (stop == end && (!is_beyond || is_small)) {
-    if (is_small) magnitude = 0.0;
-    return {.kind = Cell::Kind::kNumber,
-            .value = negative ? -magnitude : magnitude,
-            .decimal_mark = mark};
+    return {.kind = Cell::Kind::kNumber, .value = is_small ? 0.0 : value, .decimal_mark = mark};
   }
   if (const std::optional<double> seconds = ReadClock(text)) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};

@@ -30,7 +30,7 @@ struct Row {
   std::size_t offset = 0;
   Strings cells = {};
   std::vector<Cell::Kind> kinds = {};
-  std::size_t numbers = 0, texts = 0;
+  std::size_t numbers = 0, texts = 0, empty = 0;
   std::size_t filled = 0;   // number of cells, empty ones at the end aside
   std::size_t columns = 0;  // number of cells, one trailing delimiter aside
 
@@ -41,6 +41,7 @@ struct Row {
       kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter).kind);
       numbers += IsNumeric(kinds.back()) ? 1 : 0;
       texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
+      empty += cells.back().empty() ? 1 : 0;
       if (!cells.back().empty()) filled = cells.size();
     }
     columns = cells.size() > 1 && cells.back().empty() ? cells.size() - 1 : cells.size();
@@ -48,7 +49,6 @@ struct Row {
   }
   /// Looks like data whatever the other rows are: "sample_rate,200" does not, "1,2" does.
   [[nodiscard]] bool HasData() const {
-    const auto empty = static_cast<std::size_t>(std::ranges::count(cells, std::string()));
     return numbers >= 1 && (IsNumeric(kinds.front()) || cells.size() - texts - empty >= 2);
   }
   /// Returns that many names of a header between blanks: words, each with what is in brackets
