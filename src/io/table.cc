@@ -206,17 +206,8 @@ class Reading {
     return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
   }
 
-  /// True for cells that name every column that mostly holds numbers.
-  bool NamesColumns(const Strings& cells) const {
-    for (std::size_t column = 0; column < layout_.mostly_numbers.size(); ++column) {
-      const bool is_named = column < cells.size() && !cells[column].empty();
-      if (layout_.mostly_numbers[column] && !is_named) return false;
-    }
-    return true;
-  }
-
   /// Looks for names and units: the row above the data, or, where that is no header or one of
-  /// units, the nearest row above with a name for every column of which two are known.
+  /// units, the nearest row above of which two words are known.
   void FindNames() {
     std::size_t header = data_;
     bool are_known = false;
@@ -239,7 +230,7 @@ class Reading {
       }
       const bool is_adjacent = names_.empty() && (k + 1 == data_ || k + 1 == header);
       const std::size_t known = CountKnownWords(*cells);
-      if (are_known || !(is_adjacent || (known >= 2 && NamesColumns(*cells)))) continue;
+      if (are_known || !(is_adjacent || known >= 2)) continue;
       are_known = known > 0;
       header = k;
       names_ = *std::move(cells);

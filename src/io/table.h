@@ -53,9 +53,9 @@ struct CsvTable {
 /// first row with as many cells as most such rows and no text in a column of numbers. Text below is
 /// an error, unless it repeats the header; blank lines and comments, which begin with '#', are not.
 ///
-/// *Header.* Of the rows of text above the data one with a name for every column of numbers has the
-/// names, and one where at least half of the cells are symbols of units has these; other rows are
-/// skipped. A file whose first row is data has the header of a last comment above it, or none.
+/// *Header.* Of the rows of text above the data one with two words that are known, or the last, has
+/// the names, and one where at least half of the cells are symbols of units has these; other rows
+/// are skipped. A file whose first row is data has the header of a last comment above it, or none.
 struct Layout {
   CsvTable header;  ///< the table without rows
   char delimiter = ',';
