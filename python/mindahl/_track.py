@@ -23,7 +23,7 @@ class CycleTable(Told, Table):
     headline: the whole test in one line.
     changes: sentences on steps and trends beyond chance, at most ten; empty if there are none.
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
-        "first", "last", "settled_at", "steps" and "trends".
+        "first", "last", "settled_at" and "changes".
     established: did any fit converge?
     """
 
@@ -45,7 +45,7 @@ class CycleTable(Told, Table):
                 self._columns[name] = np.array(cells, dtype=np.int64)
             elif name in ("slip_regime", "flags"):
                 self._columns[name] = np.array(cells, dtype=str)
-            elif name != "checksum":
+            else:
                 self._columns[name] = np.array([float(cell or "nan") for cell in cells])
 
 

@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <iterator>
 #include <numeric>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -97,7 +95,6 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   CycleFit fit;
   fit.number = cycle.number;
   fit.first_line = cycle.first_line;
-  fit.checksum = cycle.checksum;
   fit.samples = cycle.record.size();
   const loop::Record& record = cycle.record;
   if (!record.time.empty()) fit["start_time"] = record.time.front();
@@ -169,7 +166,7 @@ std::string CycleTableHeader(bool is_torsional) {
     header += fmt::format(",{}", column.name);
     if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
   }
-  return header + ",slip_regime,accumulated_energy [J],flags,checksum\n";
+  return header + ",slip_regime,accumulated_energy [J],flags\n";
 }
 
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
@@ -181,16 +178,15 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
     if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
   const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
-  fmt::format_to(end, ",{},{},{},{:016x}\n", regime, accumulated_energy, fmt::join(fit.flags, " "),
-                 fit.checksum);
+  fmt::format_to(end, ",{},{},{}\n", regime, accumulated_energy, fmt::join(fit.flags, " "));
   return fmt::to_string(row);
 }
 
 CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
   const std::size_t numbers = CountOfNumbers(is_torsional);
-  // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
-  const std::size_t columns = 3 + numbers + 4;
+  // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags.
+  const std::size_t columns = 3 + numbers + 3;
   if (cells.size() != columns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
@@ -201,16 +197,10 @@ CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   for (std::size_t k = 0; k < numbers; ++k) {
     if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
-  const std::string_view regime = cells[columns - 4];
+  const std::string_view regime = cells[columns - 3];
   if (!regime.empty()) fit.slips_grossly = regime == kGross;
-  if (const std::string_view flags = cells[columns - 2]; !flags.empty()) {
+  if (const std::string_view flags = cells[columns - 1]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
-  }
-  const std::string_view checksum = cells[columns - 1];
-  const auto [end, error] =
-      std::from_chars(checksum.data(), checksum.data() + checksum.size(), fit.checksum, 16);
-  if (error != std::errc() || end != checksum.data() + checksum.size()) {
-    throw InputError(fmt::format("'{}' is no checksum", checksum));
   }
   return fit;
 }

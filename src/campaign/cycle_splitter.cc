@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <bit>
 #include <optional>
 #include <utility>
 
@@ -19,15 +18,6 @@ void AppendColumn(const Column& from, std::vector<Value>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// Stirs a word into a checksum: the finaliser of SplitMix64 (Steele, Lea & Flood 2014), which
-/// takes every 64-bit word to another.
-std::uint64_t Stir(std::uint64_t checksum, std::uint64_t word) {
-  std::uint64_t mixed = (checksum ^ word) + 0x9e3779b97f4a7c15U;
-  mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9U;
-  mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebU;
-  return mixed ^ (mixed >> 31);
-}
-
 template <typename Value>
 void EraseFirst(std::vector<Value>& values, std::size_t count) {
   if (values.empty()) return;
@@ -36,8 +26,8 @@ void EraseFirst(std::vector<Value>& values, std::size_t count) {
 
 }  // namespace
 
-CycleSplitter::CycleSplitter(double gate, std::size_t together, std::uint64_t seed)
-    : gate_(gate), together_(together), finder_(gate), checksum_(seed) {
+CycleSplitter::CycleSplitter(double gate, std::size_t together)
+    : gate_(gate), together_(together), finder_(gate) {
   RequireNonNegative("reversal gate [m]", gate);
   if (together < 1) ThrowInvalid("cycles to a piece [-]", 0, "must be >= 1");
 }
@@ -50,16 +40,8 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
     AppendColumn(columns[k], kept_.*loop::kRecordColumns[k]);
   }
   AppendColumn(lines, kept_.lines);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    // The numbers of a row are a polynomial, so that only one word a row waits for the last one.
-    std::uint64_t row = lines[i];
-    for (const auto& column : columns) {
-      if (column.empty()) continue;
-      row = row * 0xd1342543de82ef95U + std::bit_cast<std::uint64_t>(column[i]);
-    }
-    checksum_ = Stir(checksum_, row);
-    const std::optional<std::size_t> turn = finder_.Add(samples.displacement[i]);
-    if (turn) Complete(*turn, cycles);
+  for (const double displacement : samples.displacement) {
+    if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Complete(*turn, cycles);
   }
   for (const auto column : loop::kRecordColumns) EraseFirst(kept_.*column, begin_);
   EraseFirst(kept_.lines, begin_);
@@ -79,10 +61,8 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
     ++turns_;
     return;
   }
-  Cycle& cycle = cycles.emplace_back(Cycle{.number = cycles_ + 1,
-                                           .first_line = kept_.lines[begin_],
-                                           .record = {},
-                                           .checksum = checksum_});
+  Cycle& cycle = cycles.emplace_back(
+      Cycle{.number = cycles_ + 1, .first_line = kept_.lines[begin_], .record = {}});
   for (const auto column : loop::kRecordColumns) {
     const std::vector<double>& values = kept_.*column;
     if (values.empty()) continue;

@@ -362,18 +362,8 @@ void Describe(std::vector<Evolution>& evolutions) {
   for (Evolution& each : evolutions) each.description = *Describe(each.course);
 }
 
-void DissipatedEnergy::Add(const CycleFit& fit) {
-  const auto steps = static_cast<double>(std::max<std::size_t>(fit.samples, 2) - 1);
-  double energy = fit["energy"].value_or(0.0);
-  if (fit.HasFlag("not_closed") || fit.HasFlag("rows_missing")) {
-    energy = steps * of_a_step;
-  } else {
-    of_a_step = energy / steps;
-  }
-  total += static_cast<double>(together) * energy;
-}
-
 std::string Headline(std::span<const Evolution> evolutions) {
+  constexpr std::size_t kFewestToTest = 20;
   std::string text;
   bool has_force = false;
   for (const Evolution& evolution : evolutions) {
@@ -388,7 +378,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
       const bool in_percent = quantity.name == "sigma";
       const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
       text += change.empty() ? FromTo(course.from, course.to, evolution.unit) : change;
-    } else if (evolution.is_tested()) {
+    } else if (evolution.course.bins().size() >= kFewestToTest) {
       text += FromTo(course.from, course.from, evolution.unit) + " throughout, but for scatter";
     } else {
       text += FromTo(evolution.course.first(), evolution.course.last(), evolution.unit) +

@@ -21,8 +21,7 @@ std::vector<CycleFit> FitBatch(const TrackOptions& options, const std::vector<Cy
 Tracker::Tracker(TrackOptions options, Done done)
     : options_(std::move(options)),
       done_(std::move(done)),
-      splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together,
-                options_.seed) {
+      splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together) {
   if (options_.threads < 1) ThrowInvalid("threads [-]", 0, "must be >= 1");
   if (options_.skipped % kBatch != 0) {
     ThrowInvalid("skipped fits [-]", static_cast<double>(options_.skipped),
@@ -36,10 +35,7 @@ void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> 
   splitter_.Add(samples, lines, cycles_);
   for (Cycle& cycle : cycles_) {
     Log(cycle);
-    if (fits_++ < options_.skipped) {
-      if (fits_ == options_.skipped) skipped_up_to_ = cycle.checksum;
-      continue;
-    }
+    if (fits_++ < options_.skipped) continue;
     batch_.push_back(std::move(cycle));
     if (batch_.size() == kBatch) Begin();
   }

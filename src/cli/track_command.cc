@@ -1,8 +1,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -48,27 +46,27 @@ struct TrackedTest {
   std::size_t broken_rows = 0;     // rows skipped
   loop::ReversalGate gate = {};
   std::size_t fits = 0;
-  std::size_t flagged = 0;
-  std::size_t resumed = 0;                                     // fits that the table had already
   std::map<std::string, std::size_t, std::less<>> flags = {};  // how many fits have each
-  campaign::DissipatedEnergy energy = {};
+  std::size_t together = 1;                                    // cycles of a fit
+  double energy = 0.0;                                         // [J] dissipated
   std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
   std::vector<Evolution> evolutions = {};
   std::vector<std::string> notes = {};  // what was assumed, one sentence each
 
-  /// Adds a fit whose row is in the table, in their order, but for its energy.
+  /// Adds the fit of the next row of the table.
   void Add(const CycleFit& fit) {
+    // What is between the ends of a piece that does not close is no energy dissipated.
+    const bool is_loop = !fit.HasFlag("not_closed") && !fit.HasFlag("rows_missing");
+    if (is_loop) energy += static_cast<double>(together) * fit["energy"].value_or(0.0);
     ++fits;
-    flagged += fit.flags.empty() ? 0 : 1;
     for (const std::string& flag : fit.flags) ++flags[flag];
     campaign::AddTo(evolutions, fit);
   }
-  /// Returns the number of fits with a flag.
-  [[nodiscard]] std::size_t CountOf(std::string_view flag) const {
-    return flags.contains(flag) ? flags.find(flag)->second : 0;
-  }
   /// False where no fit converged.
-  [[nodiscard]] bool established() const { return fits == 0 || CountOf("not_converged") < fits; }
+  [[nodiscard]] bool established() const {
+    const auto failed = flags.find("not_converged");
+    return failed == flags.end() || failed->second < fits;
+  }
 };
 
 // --- the answer
@@ -83,32 +81,18 @@ Json QuantityRows(const TrackedTest& test) {
         {"known", evolution.known},
         {"unit", evolution.unit},
         {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
-        {"steps", Json::array()},
-        {"trends", Json::array()}};
-    for (const campaign::Change& change : course.changes) {
-      Json& row = quantities[std::string(evolution.quantity->name)];
-      if (change.is_step()) {
-        row["steps"].push_back({{"cycle", change.first_cycle},
-                                {"before", change.from},
-                                {"after", change.to},
-                                {"p_value", change.p_value}});
-      } else {
-        row["trends"].push_back({{"first_cycle", change.first_cycle},
-                                 {"last_cycle", change.last_cycle},
-                                 {"from", change.from},
-                                 {"to", change.to},
-                                 {"p_value", change.p_value}});
-      }
-    }
+        {"changes", report::ListOf(course.changes, [](const campaign::Change& change) -> Json {
+           return {{"first_cycle", change.first_cycle},
+                   {"last_cycle", change.last_cycle},
+                   {"from", change.from},
+                   {"to", change.to},
+                   {"p_value", change.p_value}};
+         })}};
   }
   return quantities;
 }
 
 std::string ToJson(const TrackedTest& test, const Json& quantities) {
-  Json flags = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    flags[flag.name] = test.CountOf(flag.name);
-  }
   return report::Document(
       "mindahl.track/1", {{"input",
                            {{"files", test.files},
@@ -119,9 +103,8 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
                           {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
                           {"output", test.output},
                           {"fits", test.fits},
-                          {"flagged", test.flagged},
-                          {"flags", std::move(flags)},
-                          {"accumulated_energy", test.energy.total},
+                          {"flags", test.flags},
+                          {"accumulated_energy", test.energy},
                           {"headline", campaign::Headline(test.evolutions)},
                           {"changes", campaign::ChangeStatements(test.evolutions)},
                           {"quantities", quantities},
@@ -132,8 +115,9 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
 Json FlagRows(const TrackedTest& test) {
   Json rows = Json::object();
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const std::size_t cycles = test.CountOf(flag.name);
-    if (cycles > 0) rows[flag.name] = {{"cycles", cycles}, {"what it says", flag.meaning}};
+    const auto found = test.flags.find(flag.name);
+    if (found == test.flags.end()) continue;
+    rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};
   }
   return rows;
 }
@@ -143,8 +127,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
       fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
                   test.output),
-      report::Quantity(test.energy.total, "J", 6) + " dissipated in all"};
-  if (test.resumed > 0) facts.push_back(fmt::format("{} fits existed already", test.resumed));
+      report::Quantity(test.energy, "J", 6) + " dissipated by the cycles that close"};
   if (test.unused_samples > 0) {
     facts.push_back(
         fmt::format("{} samples at the ends belong to no whole cycle", test.unused_samples));
@@ -154,18 +137,12 @@ std::vector<std::string> Facts(const TrackedTest& test) {
 }
 
 std::string ToText(const TrackedTest& test, const Json& quantities) {
-  std::string text = campaign::Headline(test.evolutions) + '\n' +
-                     fmt::format("{}\n", fmt::join(Facts(test), "\n"));
-  if (test.flagged > 0) {
-    text += fmt::format("\ncycles with a flag: {}\n{}", test.flagged,
-                        report::TableText(FlagRows(test)));
-  }
-  if (test.evolutions.empty()) return text;
+  std::string text =
+      fmt::format("{}\n{}\n", campaign::Headline(test.evolutions), fmt::join(Facts(test), "\n"));
+  if (!test.flags.empty()) text += '\n' + report::TableText(FlagRows(test));
   text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
-  const bool is_tested = std::ranges::any_of(test.evolutions, &campaign::Evolution::is_tested);
-  if (changes.empty() && !is_tested) return text;
-  if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
+  if (changes.empty()) return text;
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
@@ -184,7 +161,6 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
         panel);
   }
   const bool is_failed = !test.established();
-  const std::string flags = report::TableHtml("cycles with a flag", FlagRows(test));
   return report::PageHtml(
       fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
       (is_failed ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
@@ -199,7 +175,7 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
           report::SectionHtml("Evolution", report::SideBySide(figures)) +
           report::SectionHtml(
               "What to mind",
-              (flags.empty() ? report::ParagraphHtml("No cycle has a flag.") : flags) +
+              report::TableHtml("cycles with a flag", FlagRows(test)) +
                   report::ParagraphHtml("Errors assume that the model is adequate: check some "
                                         "cycles with mindahl fit.")) +
           report::ProvenanceHtml(provenance));
@@ -207,70 +183,36 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
 
 // --- the run
 
-void RequireTrackOptions(const TrackCommandOptions& options) {
-  MakeCycleFitOptions(options.fit);
-  Validate(options.fit.contact);
-  // A table is the work of hours; a device loses nothing.
-  std::error_code ignored;
-  if (options.resume || options.overwrite) return;
-  if (!std::filesystem::is_regular_file(options.output, ignored)) return;
-  Refuse("--output: {} exists: add --resume to go on with it, or --overwrite", options.output);
-}
-
-/// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
-/// names and values: rows made with others are not gone on with, though the last ones be the same.
-std::uint64_t SeedOf(const CLI::App& command) {
-  constexpr auto kOfNoRow = std::to_array<std::string_view>(
-      {"help", "output", "json", "report", "resume", "overwrite", "threads"});
-  std::string words;
-  for (const CLI::Option* option : OptionsOf(command)) {  // not the files, whose content counts
-    if (std::ranges::find(kOfNoRow, NameOf(*option)) != kOfNoRow.end()) continue;
-    words += NameOf(*option);
-    for (const std::string& value : option->results()) words += "=" + value;
-    if (option->count() == 0) words += "=" + option->get_default_str();
-  }
-  std::uint64_t seed = 0xcbf29ce484222325U;
-  for (const char letter : words) {
-    seed = (seed ^ static_cast<unsigned char>(letter)) * 0x100000001b3U;
-  }
-  return seed;
-}
-
 /// Holds what a resumed run keeps of the table on disk: its whole batches, if it has any.
 struct KeptCycles {
-  std::size_t fits = 0;
-  std::uintmax_t bytes = 0;    // size of the header and these
-  std::uint64_t checksum = 0;  // of what the last of them was made from
+  std::size_t fits = 0;      // of all batches but the last
+  std::uintmax_t bytes = 0;  // size of the header and of all batches
+  std::string last = {};     // rows of the last batch, which is fitted again to compare
 };
 
-/// @param visit  is given every row that is kept
+/// @param visit  is given every fit of KeptCycles::fits
 /// @throws InputError where the file is no such table
 KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
                           const std::function<void(const CycleFit&)>& visit) {
-  constexpr std::string_view kRemedy = "give another --output, or --overwrite";
   std::ifstream file(path, std::ios::binary);
-  if (!file) Refuse("cannot read '{}': {}", path, std::strerror(errno));
+  const std::string header = campaign::CycleTableHeader(is_torsional);
   std::string line;
   std::getline(file, line);
-  const std::string header = campaign::CycleTableHeader(is_torsional);
-  if (line + '\n' != header) {
-    Refuse("--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy);
-  }
+  if (line + '\n' != header) Refuse("its first line is another");
   KeptCycles kept;
-  std::vector<CycleFit> batch;
-  std::uintmax_t bytes = header.size();
+  std::string batch;
+  std::size_t rows = 0;
+  kept.bytes = header.size();
   // A line without a line feed was being written when a run was killed, and is no row.
   while (std::getline(file, line) && !file.eof()) {
-    try {
-      batch.push_back(campaign::ReadCycleTableRow(line, is_torsional));
-    } catch (const InputError& error) {
-      Refuse("--resume: {}:{}: {}: {}", path, kept.fits + batch.size() + 2, error.what(), kRemedy);
+    batch += line + '\n';
+    if (++rows % campaign::kBatch != 0) continue;
+    for (const std::string_view row : PartsOf(kept.last, '\n')) {
+      if (!row.empty()) visit(campaign::ReadCycleTableRow(row, is_torsional));
     }
-    bytes += line.size() + 1;
-    if (batch.size() < campaign::kBatch) continue;
-    std::ranges::for_each(batch, visit);
-    kept = {kept.fits + batch.size(), bytes, batch.back().checksum};
-    batch.clear();
+    kept.fits = rows - campaign::kBatch;
+    kept.bytes += batch.size();
+    kept.last = std::exchange(batch, {});
   }
   return kept;
 }
@@ -278,26 +220,23 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
 /// Reads a test of many cycles piece by piece, fits each, and appends its row to the table.
 class TrackRun {
  public:
-  TrackRun(const TrackCommandOptions& options, const CLI::App& command)
-      : options_(options),
-        command_(command),
-        test_{.output = options.output, .energy = {.together = options.track.together}} {}
+  explicit TrackRun(const TrackCommandOptions& options)
+      : options_(options), test_{.output = options.output, .together = options.track.together} {}
 
   /// @throws InputError naming the place in a file; the batches before it are in the table
   TrackedTest Track() {
     for (const std::string& file : options_.fit.files) ReadFile(file);
     tracker_->Finish();
-    if (kept_.fits > 0) OpenTable();  // also of a record that ends with it, or before
+    if (!kept_.last.empty()) RefuseTable();  // the record ends before the table
     if (output_) output_->Finish();
     test_.cycles = tracker_->cycles();
     test_.log = tracker_->log();
     if (test_.cycles == 0) {
       Refuse(
-          "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
+          "{}: no whole cycle to fit: the displacement turns {} times by more than {:.3g} m: "
+          "choose "
           "another column with --displacement, or a smaller --reversal-gate",
-          fmt::join(test_.files, ", "),
-          options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
-          test_.gate.gate);
+          fmt::join(test_.files, ", "), test_.gate.count, test_.gate.gate);
     }
     campaign::Describe(test_.evolutions);
     return std::move(test_);
@@ -312,9 +251,8 @@ class TrackRun {
     }
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
     if (layout.is_torsional == test_.is_torsional) return;
-    Refuse("{} holds a {} and {} a {}: track them apart", test_.files.front(),
-           test_.is_torsional ? "torque" : "force", layout.name,
-           layout.is_torsional ? "torque" : "force");
+    Refuse("{} and {} hold a force and a torque: track them apart", test_.files.front(),
+           layout.name);
   }
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
@@ -327,12 +265,10 @@ class TrackRun {
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
     if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
     Resume(options);
-    const loop::ReversalGate& gate = test_.gate;
-    if (!gate.certain) {
-      test_.notes.push_back(fmt::format(
-          "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
-          "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
-          source, head.size(), gate.count, gate.gate, gate.other_count, gate.other_gate));
+    if (!test_.gate.certain) {
+      test_.notes.push_back(
+          fmt::format("{}: the number of reversals is not certain, {} or {}: set --reversal-gate",
+                      source, test_.gate.count, test_.gate.other_count));
     }
     tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
   }
@@ -362,46 +298,42 @@ class TrackRun {
 
   /// Takes over what the table has already, where that is asked for.
   void Resume(campaign::TrackOptions& made) {
-    made.seed = SeedOf(command_);
     std::error_code error;
     if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error)
       return;
-    kept_ = ReadKeptCycles(options_.output, test_.is_torsional, [&](const CycleFit& fit) {
-      test_.energy.Add(fit);
-      test_.Add(fit);
-    });
-    test_.resumed = kept_.fits;
+    try {
+      kept_ = ReadKeptCycles(options_.output, test_.is_torsional,
+                             [this](const CycleFit& fit) { test_.Add(fit); });
+    } catch (const InputError& fault) {
+      Refuse("--resume: {} is no table of such cycles: {}", options_.output, fault.what());
+    }
     made.skipped = kept_.fits;
   }
 
-  /// Opens the table behind what is kept of it.
-  void OpenTable() {
-    if (output_) return;
-    if (kept_.fits > 0 && tracker_->skipped_up_to() != kept_.checksum) {
-      Refuse(
-          "--resume: {} was made from another record or with other options, or what was read "
-          "before "
-          "its row {} was another: give those, another --output, or --overwrite",
-          options_.output, kept_.fits);
-    }
-    output_.emplace(options_.output, kept_.bytes);
-    if (kept_.fits == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+  [[noreturn]] void RefuseTable() const {
+    Refuse(
+        "--resume: {} was made from another record or with other options: give those, another "
+        "--output, or --overwrite",
+        options_.output);
   }
 
-  /// Appends the rows of a batch.
+  /// Appends the rows of a batch, or compares them with the last that are kept.
   void Take(std::span<const CycleFit> fits) {
-    OpenTable();
     std::string rows;
     for (const CycleFit& fit : fits) {
-      test_.energy.Add(fit);
-      rows += campaign::CycleTableRow(fit, test_.energy.total, test_.is_torsional);
+      test_.Add(fit);
+      rows += campaign::CycleTableRow(fit, test_.energy, test_.is_torsional);
     }
-    output_->Append(rows);
-    for (const CycleFit& fit : fits) test_.Add(fit);
+    const bool is_kept = !kept_.last.empty();
+    if (is_kept && std::exchange(kept_.last, {}) != rows) RefuseTable();
+    if (!output_) {
+      output_.emplace(options_.output, kept_.bytes);
+      if (kept_.bytes == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+    }
+    if (!is_kept) output_->Append(rows);
   }
 
   const TrackCommandOptions& options_;
-  const CLI::App& command_;
   TrackedTest test_;
   std::optional<campaign::Tracker> tracker_;
   KeptCycles kept_;
@@ -410,8 +342,15 @@ class TrackRun {
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
   RequireDistinctFiles(options.fit.files);
-  RequireTrackOptions(options);
-  const TrackedTest test = TrackRun(options, command).Track();
+  Validate(options.fit.contact);
+  MakeCycleFitOptions(options.fit);
+  // A table is the work of hours; a device loses nothing.
+  std::error_code ignored;
+  if (!options.resume && !options.overwrite &&
+      std::filesystem::is_regular_file(options.output, ignored)) {
+    Refuse("--output: {} exists: add --resume to go on with it, or --overwrite", options.output);
+  }
+  const TrackedTest test = TrackRun(options).Track();
   console.exit_status = test.established() ? kDone : kNotEstablished;
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path,

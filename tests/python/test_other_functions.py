@@ -79,9 +79,9 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     printed = program("track", long_record, worn, "--output", tmp_path / "third.csv")
     assert tracked.text() == printed.replace(f" in {tmp_path}/third.csv", "")
     assert "<pre>" in tracked._repr_html_() and tracked.established
-    step, = tracked.quantities["slip_force"]["steps"]
-    assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)
-    assert any(line.startswith(f"slip_force: a step at cycle {step['cycle']}, ") for line in tracked.changes)
+    step, = tracked.quantities["slip_force"]["changes"]
+    assert step["to"] == pytest.approx(0.8 * step["from"], rel=0.01)
+    assert any(line.startswith(f"slip_force: a step at cycle {step['first_cycle']}, ") for line in tracked.changes)
     assert tracked.headline.startswith("Tc ")
     assert not any("step" in line for line in mindahl.track(long_record).changes)
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,7 +61,6 @@ struct CycleFit {
   /// Numbers of the table's columns, each empty where it is not known.
   std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
   std::optional<bool> slips_grossly{};  ///< the fitted law at the cycle's amplitude
-  std::uint64_t checksum = 0;           ///< like Cycle::checksum, up to the cycle's last sample
   /// Holds the warnings about this cycle, each one of CycleFlags().
   std::vector<std::string> flags{};
 

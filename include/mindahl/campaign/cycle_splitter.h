@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,9 +19,6 @@ struct Cycle {
   std::size_t number = 1;      ///< number of the first of them, counted from 1
   std::size_t first_line = 0;  ///< line of the file, counted from 1
   loop::Record record;
-  /// Covers every sample and line number from the test's first up to the one by which the cycle's
-  /// end was seen: two tests that differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
-  std::uint64_t checksum = 0;
 };
 
 /// Cuts samples that arrive piece by piece into cycles. A cycle begins at the first turning point
@@ -32,9 +28,8 @@ class CycleSplitter {
  public:
   /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it
   /// @param together  cycles to a piece, >= 1
-  /// @param seed      what checksums begin with, of what else makes a test its own
   /// @throws InvalidArgument for a gate or a number beyond these
-  explicit CycleSplitter(double gate, std::size_t together = 1, std::uint64_t seed = 0);
+  explicit CycleSplitter(double gate, std::size_t together = 1);
 
   /// @param samples  the next, [m, N, s, N]; time and normal load may be empty, always or never
   /// @param lines    of the file, one a sample
@@ -64,7 +59,6 @@ class CycleSplitter {
   std::size_t begin_ = 0;    // of the cycle, in those
   std::size_t turns_ = 0;    // turning points since the cycle's first, with it
   std::size_t cycles_ = 0;
-  std::uint64_t checksum_;
 };
 
 /// Reads the first samples, as many as determine how the record is read: some cycles, or the

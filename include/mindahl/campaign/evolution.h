@@ -99,12 +99,6 @@ struct Evolution {
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
-
-  /// True if there are enough values for a test of a change.
-  [[nodiscard]] bool is_tested() const {
-    constexpr std::size_t kFewest = 20;
-    return course.bins().size() >= kFewest;
-  }
 };
 
 /// Returns the evolutions of all of them before the first cycle.
@@ -116,20 +110,6 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 
 /// Describes those that have a value, and removes the others.
 void Describe(std::vector<Evolution>& evolutions);
-
-/// Energy [J] dissipated over a test, from fits in their order.
-///
-/// A cycle that does not end where it began is no loop, and what is between its ends is no energy
-/// dissipated: a spike of the displacement, which turns it, makes two of one cycle with ten times
-/// its energy. Such count as much as the same number of samples of the last closed one, so that the
-/// parts of a cycle count for it together.
-struct DissipatedEnergy {
-  std::size_t together = 1;  ///< cycles of one fit
-  double total = 0.0;        ///< up to the end of the last fit's cycles
-  double of_a_step = 0.0;    ///< energy [J] from sample to sample of the last closed cycle
-
-  void Add(const CycleFit& fit);
-};
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
 /// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is

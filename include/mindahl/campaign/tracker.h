@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <functional>
 #include <future>
@@ -23,7 +22,6 @@ struct TrackOptions {
   std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
   std::size_t threads = 1;  ///< worker threads that fit, >= 1; where it is 1 the calling one fits
   std::size_t skipped = 0;  ///< fits at the beginning that are not made: a multiple of kBatch
-  std::uint64_t seed = 0;   ///< initial value of the checksums, as CycleSplitter takes it
 };
 
 /// Fits of a batch begin one where the last one ended, the first anew: whatever the number of
@@ -56,9 +54,6 @@ class Tracker {
   /// Returns the loops of the cycles 1, 10, 100, … so far, thinned to what a figure shows.
   [[nodiscard]] const std::vector<Cycle>& log() const { return log_; }
 
-  /// Returns the checksum of the last cycle that is skipped, once it was read.
-  [[nodiscard]] std::optional<std::uint64_t> skipped_up_to() const { return skipped_up_to_; }
-
   /// Returns the number of whole cycles so far, fitted or not.
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
@@ -74,7 +69,6 @@ class Tracker {
   std::vector<Cycle> batch_;
   std::size_t fits_ = 0;                                  // made or skipped
   std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
-  std::optional<std::uint64_t> skipped_up_to_;
   std::vector<Cycle> log_;
 };
 
