@@ -26,8 +26,6 @@
 namespace mindahl::identification {
 namespace {
 
-using models::InitialState;
-
 void RequirePlan(const Expectation& expected, const Protocol& protocol) {
   models::Validate(expected.law);
   models::Validate(expected.rig);
@@ -78,29 +76,6 @@ Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
   return solution;
 }
 
-/// 2 ln Λ of the loops fitted by Dahl's own law: Σ(T_Dahl − T)² over the variance of the noise,
-/// errors of the displacement acting as force noise by the slope of the loop.
-double LawEvidence(const loop::Record& record, const Expectation& expected,
-                   const Protocol& protocol) {
-  if (protocol.initial_state == InitialState::kSteady) return 0.0;
-  FitOptions options;
-  options.model = models::FindFrictionModel("dahl");
-  options.initial_states = {protocol.initial_state};
-  if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
-  const FitResult other = Fit({&record, 1}, options, Depth::kEstimate);
-  double slopes = 0.0;  // Σ(dT/dδ)²
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    const double step = record.displacement[i] - record.displacement[i - 1];
-    const double rise = record.force[i] - record.force[i - 1];
-    if (step != 0) slopes += (rise / step) * (rise / step);
-  }
-  const auto samples = static_cast<double>(record.size());
-  const double of_force = expected.force_noise * expected.force_noise;
-  const double of_displacement = expected.displacement_noise * expected.displacement_noise;
-  const double variance = of_force + slopes / samples * of_displacement;
-  return samples * other.rms * other.rms / variance;
-}
-
 }  // namespace
 
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
@@ -141,7 +116,6 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   for (std::size_t k = 0; k < result.parameters.size(); ++k) {
     estimates.Fill(problem.parameters.reported()[k], result.parameters[k]);
   }
-  result.law_evidence = LawEvidence(record, expected, protocol);
   return result;
 }
 

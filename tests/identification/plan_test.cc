@@ -102,16 +102,6 @@ TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
   }
 }
 
-TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
-  EXPECT_EQ(ExpectFit(Quiet(), ProtocolOf(0.8, InitialState::kSteady)).law_evidence, 0.0);
-  const double evidence = ExpectFit(Quiet(), ProtocolOf(0.8)).law_evidence;
-  EXPECT_GT(evidence, 100);
-  Expectation noisy = Quiet();
-  noisy.force_noise *= 10;
-  constexpr double kRounding = 1e-6;
-  EXPECT_NEAR(ExpectFit(noisy, ProtocolOf(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
-}
-
 TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};

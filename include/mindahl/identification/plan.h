@@ -40,9 +40,6 @@ struct ExpectedFit {
   /// σ, α, Tc and all else that is fitted or reported: values that are expected, standard errors,
   /// 95 % intervals; without errors what the loop does not determine. No verdicts.
   std::vector<ParameterEstimate> parameters;
-  /// 2 ln Λ by which the loop is expected to distinguish Masing's rules from Dahl's own law; 0 for
-  /// a steady loop, where both are one curve.
-  double law_evidence = 0.0;
 
   /// Returns nullptr when there is none of that name.
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const {
