@@ -122,8 +122,8 @@ def contact(
 def convert(
     fit: Any = None, *, to: str, sigma: Optional[float] = None, slip_force: Optional[float] = None,
     amplitude: Optional[float] = None, alpha: Optional[float] = None, from_: Optional[str] = None,
-    tolerance: float = 0.01, elements: int = 8, beta: float = 0.5,
-    normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
+    tolerance: float = 0.01, elements: int = 8,
+    normal_load: Optional[float] = None,
 ) -> Conversion:
     """Converts a contact's steady loop to another law or program.
 
@@ -132,8 +132,7 @@ def convert(
         or "dahl".
     amplitude: X [m] of the contact's steady loop.
     to: "masing", "dahl", "lugre", "bouc-wen", "iwan" or "lammps".
-    tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
-    normal_load [N], contact_radius [m]: for "lammps".
+    tolerance: of force and energy [-]. elements: number for "iwan". normal_load [N]: for "lammps".
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
         None for "lammps" without a normal load.
     Raises ValueError naming the quantity, its value and the rule.

@@ -41,13 +41,6 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
   return *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl");
 }
 
-/// Returns the terms of a fit that no target has: all but what a rig takes.
-std::vector<std::string> TermsLeftOut(const Json& fit) {
-  auto left_out = fit.value(Json::json_pointer("/terms/added"), std::vector<std::string>());
-  std::erase(left_out, "rig_stiffness");
-  return left_out;
-}
-
 /// Takes law and amplitude from a fit where they are not given.
 void TakeFit(const Json& fit, ConvertOptions& request) {
   if (request.from.empty()) request.from = report::At(fit, "/model") == "dahl" ? "dahl" : "masing";
@@ -75,13 +68,9 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
       {.stiffness = *rig}, *request.amplitude);
 }
 
-double Require(const std::optional<double>& value, std::string_view option,
-               const ConvertOptions& request) {
-  if (value) return *value;
-  throw InputError(
-      request.fit.empty()
-          ? fmt::format("{} missing: give it, or the JSON file of a fit", option)
-          : fmt::format("{} missing: {} does not determine it: give it", option, request.fit));
+double Require(const std::optional<double>& value, std::string_view option) {
+  if (!value) Refuse("{} missing: give it, or the JSON file of a fit that determines it", option);
+  return *value;
 }
 
 /// Returns an error in percent; what rounding leaves of two curves that are one is 0.
@@ -92,18 +81,19 @@ std::string Percent(double error) {
 
 void RunConvert(ConvertOptions request, Console& console) {
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
-  std::vector<std::string> left_out;
+  std::vector<std::string> left_out;  // terms of the fit that no target has
   if (!request.fit.empty()) {
     const Json fit = ReadFit(request.fit);
     TakeFit(fit, request);
-    left_out = TermsLeftOut(fit);
-    Require(request.law.alpha, "--alpha", request);
+    left_out = fit.value(Json::json_pointer("/terms/added"), left_out);
+    std::erase(left_out, "rig_stiffness");  // the amplitude is without it
+    Require(request.law.alpha, "--alpha");
   }
   if (request.from.empty()) request.from = "masing";
-  const models::BranchLaw law = {Require(request.law.sigma, "--sigma", request),
+  const models::BranchLaw law = {Require(request.law.sigma, "--sigma"),
                                  request.law.alpha.value_or(1.0 / 3),
-                                 Require(request.law.slip_force, "--slip-force", request)};
-  const double amplitude = Require(request.amplitude, "--amplitude", request);
+                                 Require(request.law.slip_force, "--slip-force")};
+  const double amplitude = Require(request.amplitude, "--amplitude");
   request.options.amplitude = amplitude;
   const double tolerance = request.options.tolerance;
   const convert::Conversion made =
@@ -134,7 +124,7 @@ void RunConvert(ConvertOptions request, Console& console) {
       fmt::format("{}; {}\n\n{}{}\n{}\n", target.title, error_text,
                   report::TableText(parameters, kDigits), report::TableText(elements, kDigits),
                   within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
-                                       Percent(tolerance), within->lower, within->upper)
+                                       Percent(tolerance), within->first, within->second)
                          : fmt::format("not within {} at the amplitude", Percent(tolerance)));
   Json from = {{"law", request.from}};
   from.update(report::LawJson(law));
@@ -148,7 +138,7 @@ void RunConvert(ConvertOptions request, Console& console) {
        {"elements", elements},
        {"error_at_amplitude",
         {{"force", NumberOrNull(error.force)}, {"energy", NumberOrNull(error.energy)}}},
-       {"within", within ? Json({within->lower, within->upper}) : Json()},
+       {"within", within ? Json(*within) : Json()},
        {"left_out", left_out}});
   const std::string& lines_path = request.input_lines_path;
   if (!lines_path.empty()) {
@@ -183,26 +173,22 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   contact
       .Add("--from", options->from,
            "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
-           "fit's, "
-           "else masing")
+           "fit's, else masing")
       ->check(OneOf({"masing", "dahl"}));
   contact.AddQuantity("--amplitude", options->amplitude,
                       "amplitude X of the contact's steady loop [m], without the rig's travel", "M",
                       "m");
   const OptionGroup result(command, "What it becomes");
-  result.Add("--to", options->to, "law or program")
+  result
+      .Add("--to", options->to, "law or program")
       ->required()
-      ->check(OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name)));
+      ->check(OneOf(NamesOf(convert::Targets(), &TargetRow::name)));
   AddTolerance(result, options->options.tolerance,
                "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%");
   result.AddCount("--elements", options->options.elements, "number of elements of --to iwan", 1,
                   10'000);
-  result.AddShown("--beta", options->options.beta,
-                  "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.AddQuantity("--normal-load", options->options.normal_load,
                      "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
-  result.AddQuantity("--contact-radius", options->options.contact_radius,
-                     "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");

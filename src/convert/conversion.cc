@@ -25,13 +25,10 @@ constexpr std::array kMasing = {
     ParameterRow{"slip_force", "Tc", "N", "slip force"}};
 constexpr std::array kDahl = {ParameterRow{"sigma", "k", "N/m", "dT/dx at T = 0"}, kMasing[1],
                               kMasing[2]};
-constexpr std::array kLuGre = {ParameterRow{"sigma0", "k", "N/m", "bristles' stiffness"},
-                               ParameterRow{"sigma1", "zero", "N s/m", "bristles' damping"},
-                               ParameterRow{"sigma2", "zero", "N s/m", "viscous friction"},
-                               ParameterRow{"Fc", "Tc", "N", "Coulomb's force"},
-                               ParameterRow{"Fs", "Tc", "N", "static force: no Stribeck effect"}};
+constexpr std::array kLuGre = {
+    ParameterRow{"sigma0", "k", "N/m", "bristles' stiffness"},
+    ParameterRow{"Fc", "Tc", "N", "Coulomb's force, and the static one"}};
 constexpr std::array kBoucWen = {ParameterRow{"k", "k", "N/m", "stiffness k of force = k z"},
-                                 ParameterRow{"A", "one", "-", "dz/dx at z = 0"},
                                  ParameterRow{"n", "n", "-", "exponent"},
                                  ParameterRow{"beta", "beta", "1/m^n", "factor of |z|^n sgn(z dx)"},
                                  ParameterRow{"gamma", "gamma", "1/m^n", "of |z|^n"},
@@ -40,8 +37,6 @@ constexpr std::array kElements = {ParameterRow{"sigma", "k", "N/m", "sum of the 
                                   ParameterRow{"slip_force", "Tc", "N", "sum of the slip forces"}};
 constexpr std::array kLammps = {ParameterRow{"kt", "k", "N/m", "of tangential linear_history"},
                                 ParameterRow{"slip_force", "Tc", "N", "Coulomb's limit"},
-                                ParameterRow{"kt_mindlin", "k_per_a", "Pa",
-                                             "kt of tangential mindlin, whose stiffness is kt a"},
                                 ParameterRow{"mu", "mu", "-", "friction, Tc/N"}};
 
 using Lines = std::string_view;
@@ -57,10 +52,9 @@ constexpr std::array<Lines, 2> kBoucWenLines = {
     "uniaxialMaterial BoucWen 1 0.0 {k} {n} {gamma} {beta} 1.0 0.0 0.0 0.0"};
 constexpr std::array<Lines, 1> kElementLines = {
     "# OpenSees, force in N and displacement in m: tag, stiffness, displacement at slip"};
-constexpr std::array<Lines, 3> kLammpsLines = {
+constexpr std::array<Lines, 2> kLammpsLines = {
     "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
-    "tangential linear_history {k} 0.0 {mu}",
-    "tangential mindlin {k_per_a} 0.0 {mu}  # instead, where the radius changes with the load"};
+    "tangential linear_history {k} 0.0 {mu}"};
 
 constexpr std::array kTargets = {
     TargetRow{"masing", "Masing's law (mindlin-dahl)", Form::kMasing, kMasing, kMasingLines},
@@ -90,7 +84,7 @@ SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& opt
     case Form::kExponential:
       return ModelLaw{&dahl, SamePeakAndEnergy(contact, amplitude, dahl, 1.0)};
     case Form::kBoucWen:
-      return BoucWenOf(contact, amplitude, options.beta);
+      return BoucWenOf(contact, amplitude);
     case Form::kElements:
       return methods::MakeIwanElements(masing_law(), options.elements);
     case Form::kSpring:
@@ -123,17 +117,15 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
 /// Returns the values of a law that are known, by their keys.
 std::map<std::string_view, double> ValuesOf(const SteadyLaw& law,
                                             const ConversionOptions& options) {
-  std::map<std::string_view, double> values = {{"zero", 0.0}, {"one", 1.0}};
+  std::map<std::string_view, double> values;
   double stiffness = 0.0;
   double slip_force = 0.0;
   if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&law)) {
     stiffness = bouc_wen->stiffness;
     slip_force = bouc_wen->slip_force;
-    // γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
-    const double per_travel = std::pow(stiffness / slip_force, bouc_wen->exponent);
     values["n"] = bouc_wen->exponent;
-    values["beta"] = bouc_wen->beta * per_travel;
-    values["gamma"] = (1 - bouc_wen->beta) * per_travel;
+    // γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
+    values["beta"] = values["gamma"] = 0.5 * std::pow(stiffness / slip_force, bouc_wen->exponent);
   } else if (const auto* elements = std::get_if<IwanElements>(&law)) {
     for (std::size_t j = 0; j < elements->size(); ++j) {
       stiffness += elements->stiffness[j];
@@ -147,12 +139,11 @@ std::map<std::string_view, double> ValuesOf(const SteadyLaw& law,
   }
   values["k"] = stiffness;
   values["Tc"] = slip_force;
-  if (options.contact_radius) values["k_per_a"] = stiffness / *options.contact_radius;
   if (options.normal_load) values["mu"] = slip_force / *options.normal_load;
   return values;
 }
 
-/// Returns the lines that the target reads: those of which every value is known.
+/// Returns the lines that the target reads.
 std::vector<std::string> LinesOf(const SteadyLaw& law, const TargetRow& target,
                                  const std::map<std::string_view, double>& values) {
   fmt::dynamic_format_arg_store<fmt::format_context> store;
@@ -160,10 +151,7 @@ std::vector<std::string> LinesOf(const SteadyLaw& law, const TargetRow& target,
     store.push_back(fmt::arg(std::string(key).c_str(), value));
   }
   std::vector<std::string> lines;
-  for (const std::string_view line : target.lines) {
-    const bool lacks_radius = line.find("{k_per_a}") != line.npos && !values.contains("k_per_a");
-    if (!lacks_radius) lines.push_back(fmt::vformat(line, store));
-  }
+  for (const std::string_view line : target.lines) lines.push_back(fmt::vformat(line, store));
   if (const auto* elements = std::get_if<IwanElements>(&law)) {
     std::string tags;
     for (std::size_t j = 0; j < elements->size(); ++j) {
@@ -183,9 +171,8 @@ void RequireOptions(const TargetRow& target, const ConversionOptions& options) {
     ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1)");
   }
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
-  if (options.contact_radius) RequirePositive("--contact-radius [m]", *options.contact_radius);
-  if ((options.normal_load || options.contact_radius) && target.form != Form::kSpring) {
-    throw InputError("--normal-load and --contact-radius have no effect unless --to is lammps");
+  if (options.normal_load && target.form != Form::kSpring) {
+    throw InputError("--normal-load has no effect unless --to is lammps");
   }
 }
 

@@ -46,9 +46,6 @@ class BoucWenBranch {
     if (!(law.exponent >= 1 && law.exponent <= kLargestExponent)) {
       ThrowInvalid("Bouc-Wen exponent [-]", law.exponent, "must be in 1 … 20");
     }
-    if (!(law.beta > 0 && law.beta <= 1)) {
-      ThrowInvalid("Bouc-Wen beta [-]", law.beta, "must be in (0, 1]");
-    }
   }
 
   /// Force t and work ∫t dy since the branch's start.
@@ -66,8 +63,7 @@ class BoucWenBranch {
         odeint::make_controlled<odeint::runge_kutta_dopri5<Values>>(kTolerance, kTolerance);
     Values values = {state.force, state.work};
     const auto rate = [&](const Values& at, Values& derivative, double /*y*/) {
-      const double share = at[0] < 0 ? 1 - 2 * law_.beta : 1.0;  // γ − β or γ + β
-      derivative = {1 - share * std::pow(std::min(std::abs(at[0]), 1.0), law_.exponent), at[0]};
+      derivative = {1 - std::pow(std::clamp(at[0], 0.0, 1.0), law_.exponent), at[0]};
     };
     double h = y - state.y;
     while (state.y < y && values[0] < 1 - kTolerance) {
@@ -148,15 +144,6 @@ SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
   return loop;
 }
 
-}  // namespace
-
-SteadyLoop LoopOf(const SteadyLaw& law, double amplitude) {
-  RequirePositive("amplitude [m]", amplitude);
-  return std::visit([&](const auto& of) { return LoopOf(of, amplitude); }, law);
-}
-
-namespace {
-
 /// Returns the stiffness and the slip force with which a law has a contact's peak force and energy
 /// at an amplitude.
 /// @param unit  the law with a stiffness and a slip force of 1
@@ -180,6 +167,11 @@ std::pair<double, double> ScalesOf(const ModelLaw& contact, double amplitude,
 }
 
 }  // namespace
+
+SteadyLoop LoopOf(const SteadyLaw& law, double amplitude) {
+  RequirePositive("amplitude [m]", amplitude);
+  return std::visit([&](const auto& of) { return LoopOf(of, amplitude); }, law);
+}
 
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
   constexpr int kPlaces = 512;
@@ -206,23 +198,16 @@ LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double 
 
 BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
                             const models::FrictionModel& model, double shape_exponent) {
-  if (shape_exponent == 0) {
-    // A spring with Coulomb's limit loses 4Tc(X − Tc/k).
-    const SteadyLoop loop = LoopOf(contact, amplitude);
-    const double peak = loop.force(2 * amplitude);
-    const double slid = loop.energy / (4 * peak);
-    return {peak / (amplitude - slid), 0.0, peak};
-  }
   const auto [stiffness, slip_force] =
       ScalesOf(contact, amplitude, ModelLaw{&model, {1.0, shape_exponent, 1.0}});
   return {stiffness, shape_exponent, slip_force};
 }
 
-BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta) {
+BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude) {
   const auto law_of = [&](double exponent) {
     const auto [stiffness, slip_force] =
-        ScalesOf(contact, amplitude, BoucWenLaw{1.0, 1.0, exponent, beta});
-    return BoucWenLaw{stiffness, slip_force, exponent, beta};
+        ScalesOf(contact, amplitude, BoucWenLaw{1.0, 1.0, exponent});
+    return BoucWenLaw{stiffness, slip_force, exponent};
   };
   constexpr int kBits = 20;
   const auto difference = [&](double log_exponent) {

@@ -30,7 +30,6 @@ constexpr double kPlace = 4.1;       // to find the branch that a sample lies on
 constexpr double kReversal = 100.0;  // to open a branch
 constexpr double kRoot = 1.4;        // the branch law, α = 1/3: a square root and a division
 constexpr double kPower = 17.0;      // the branch law, any other α: two transcendentals
-constexpr double kRatePower = 31.0;  // the slope at the start of a branch of Dahl's law
 constexpr double kLookUp = 2.3;      // the branch law from a table
 constexpr double kElement = 0.35;    // an element of Iwan's, moved on
 constexpr double kSum = 4.0;         // the sum of their forces
@@ -54,12 +53,10 @@ Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const R
   const double evaluation = law.shape_exponent == 0         ? 0.0
                             : law.shape_exponent == 1.0 / 3 ? kRoot
                                                             : kPower;
-  const double start = model.memory == models::Memory::kNone ? kRatePower : 0.0;
-  return [&model, law, evaluation, start](const Drive& drive, std::span<double> force) {
+  return [&model, law, evaluation](const Drive& drive, std::span<double> force) {
     const LoadingPath path = PathOf(model, drive);
     models::EvaluateForce(model, law, path, drive.displacement, force);
-    return CostOf(path, force.size(), evaluation) +
-           start * static_cast<double>(path.branches.size());
+    return CostOf(path, force.size(), evaluation);
   };
 }
 
@@ -193,9 +190,8 @@ Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resoluti
   return [elements = MakeIwanElements(law, resolution.steps)](const Drive& drive,
                                                               std::span<double> force) {
     EvaluateIwanForce(elements, drive.displacement, force);
-    constexpr std::size_t kLanes = 4;  // moved at once, filled or not
-    const std::size_t moved = (elements.size() + kLanes - 1) / kLanes * kLanes;
-    return static_cast<double>(force.size()) * (kElement * static_cast<double>(moved) + kSum);
+    const auto moved = static_cast<double>(elements.size());
+    return static_cast<double>(force.size()) * (kElement * moved + kSum);
   };
 }
 

@@ -25,14 +25,7 @@ namespace {
 
 /// Resolutions at which a method is tried: tolerances, or steps, which grow fourfold.
 constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
-constexpr std::size_t kFewestElements = 4;
-constexpr std::size_t kFewestIntervals = 16;
-
-const Method& RequireMethod(std::string_view name) {
-  const Method* method = methods::FindMethod(name);
-  if (method == nullptr) throw InvalidArgument(fmt::format("there is no method '{}'", name));
-  return *method;
-}
+constexpr const char* kExactModel = "mindlin-dahl";
 
 /// Returns ∫T dδ [J], trapezoidal.
 double Work(std::span<const double> displacement, std::span<const double> force) {
@@ -45,16 +38,6 @@ double Work(std::span<const double> displacement, std::span<const double> force)
 }
 
 }  // namespace
-
-std::string Describe(const Approximation& approximation) {
-  if (approximation.method.empty()) return approximation.model;
-  const Method& method = RequireMethod(approximation.method);
-  std::string text = fmt::format("{} by {}", approximation.model, approximation.method);
-  if (method.adaptive)
-    return fmt::format("{}, tolerance {:g}", text, approximation.resolution.tolerance);
-  if (method.steps.empty()) return text;
-  return fmt::format("{}, {} {}", text, approximation.resolution.steps, method.steps);
-}
 
 methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
   if (const models::SimplifiedLaw* simple = models::FindSimplifiedLaw(approximation.model)) {
@@ -72,41 +55,26 @@ methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& 
     };
   }
   const FrictionModel* model = models::FindFrictionModel(approximation.model);
-  if (model == nullptr) {
-    throw InvalidArgument(fmt::format("there is no model '{}'", approximation.model));
+  const Method* method = methods::FindMethod(approximation.method);
+  if (model == nullptr || method == nullptr) {
+    throw InvalidArgument(fmt::format("there is no model '{}' or no method '{}'",
+                                      approximation.model, approximation.method));
   }
   BranchLaw of_model = law;
   of_model.shape_exponent = model->shape_exponent.value_or(law.shape_exponent);
-  return Prepare(RequireMethod(approximation.method), *model, of_model, approximation.resolution);
+  return Prepare(*method, *model, of_model, approximation.resolution);
 }
 
-std::string ExactModel(const BranchLaw& law) {
-  for (const FrictionModel& model : models::FrictionModels()) {
-    if (model.memory == models::Memory::kReturnPoint &&
-        model.shape_exponent == law.shape_exponent) {
-      return std::string(model.name);
-    }
-  }
-  return "mindlin-dahl";
-}
-
-std::vector<Approximation> AllApproximations(const BranchLaw& law) {
-  std::vector<Approximation> all;
-  for (const std::string_view model : {"spring", "coulomb"}) {
-    all.push_back({std::string(model), ""});
-  }
-  for (const std::string_view model : {"jenkins", "simplified-dahl", "dahl", "mindlin"}) {
-    all.push_back({std::string(model), "exact"});
-  }
-  const std::string exact = ExactModel(law);
-  if (std::ranges::find(all, exact, &Approximation::model) == all.end()) {
-    all.push_back({exact, "exact"});
+std::vector<Approximation> AllApproximations() {
+  std::vector<Approximation> all = {{"spring", ""}, {"coulomb", ""}};
+  for (const char* model : {"jenkins", "simplified-dahl", "dahl", kExactModel}) {
+    all.push_back({model, "exact"});
   }
   for (const Method& method : methods::Methods()) {
     if (method.name == "exact") continue;
-    std::size_t steps = method.masing_only ? kFewestElements : kFewestIntervals;
+    std::size_t steps = method.masing_only ? 4 : 16;  // elements, intervals
     for (const double tolerance : kTolerances) {
-      all.push_back({exact, std::string(method.name),
+      all.push_back({kExactModel, std::string(method.name),
                      method.adaptive ? Resolution{.tolerance = tolerance}
                                      : Resolution{.steps = std::exchange(steps, 4 * steps)}});
     }
@@ -130,10 +98,10 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
 
 std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive) {
   std::vector<double> exact(drive.displacement.size());
-  Prepare({ExactModel(law), "exact"}, law)(drive, exact);
+  Prepare({kExactModel, "exact"}, law)(drive, exact);
   std::vector<WorkPrecision> points;
   std::vector<double> force(exact.size());
-  for (const Approximation& approximation : AllApproximations(law)) {
+  for (const Approximation& approximation : AllApproximations()) {
     constexpr double kSample = 1.5;  // [ns], to read a displacement and to write a force
     const double cost = Prepare(approximation, law)(drive, force);
     points.push_back({.approximation = approximation,
@@ -143,15 +111,14 @@ std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Driv
   return points;
 }
 
-std::size_t CheapestWithin(double tolerance, bool energy_counts,
-                           std::span<const WorkPrecision> points) {
+std::size_t CheapestWithin(double tolerance, std::span<const WorkPrecision> points) {
   if (!(tolerance > 0 && tolerance <= 1)) {
     ThrowInvalid("tolerance [-]", tolerance, "must be in (0, 1]");
   }
   constexpr double kSameCost = 1.1;
   const auto is_within = [&](const WorkPrecision& point) {
     return point.precision.max_force <= tolerance &&
-           !(energy_counts && point.precision.energy.value_or(0) > tolerance);
+           point.precision.energy.value_or(0) <= tolerance;
   };
   double least = std::numeric_limits<double>::infinity();
   for (const WorkPrecision& point : points) {

@@ -79,7 +79,8 @@ TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   EXPECT_EQ(given["from"]["sigma"], 6e7);
   EXPECT_EQ(given["from"]["law"], "masing");
   EXPECT_EQ(given["amplitude"], 1e-6);
-  ExpectRefused(command(fit("not_identifiable")), "written.json does not determine it: give it");
+  ExpectRefused(command(fit("not_identifiable")),
+                "--alpha missing: give it, or the JSON file of a fit that determines it");
   Done(command(fit("not_identifiable")) + "--alpha 0.3");
   ExpectRefused(command("x,F\n1,2\n"), "is not the result of a fit");
   ExpectRefused(command("{}"), "is not the result of a fit");
@@ -122,7 +123,6 @@ TEST_F(Convert, RefusesWhatItsTargetHasNot) {
       return RunCommand(Command("--to " + to + more)).err;
     };
     EXPECT_EQ(refusal(" --normal-load 10").empty(), to == "lammps") << to;
-    EXPECT_EQ(refusal(" --contact-radius 1e-3").empty(), to == "lammps") << to;
     EXPECT_EQ(refusal(""), "") << to;
   }
 }

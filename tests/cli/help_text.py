@@ -37,7 +37,6 @@ EXEMPT = {
     "--cycles": ("plan", "a count"),
     "--want": ("plan", "in the unit of the parameter, or in percent"),
     "--tolerance": ("tradeoff convert", "relative, and says so"),
-    "--beta": ("convert", "a share, and says so"),
 }
 
 # Options of other programs in the documentation.

@@ -91,14 +91,13 @@ COMMANDS = [
     (ANY_CONTACT, 0),
     *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {law}", 0)
       for law in ("masing", "dahl", "lugre", "bouc-wen", "iwan")],
-    ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to lammps --normal-load 50 "
-     "--contact-radius 3e-4", 0),
+    ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to lammps --normal-load 50", 0),
     ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 "
      "--want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
-    ("tradeoff --excitation micro", 0),
+    ("tradeoff", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
     ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1", 0),

@@ -52,7 +52,7 @@ TEST_F(Units, OfATableOfCyclesAreThoseOfItsHeader) {
 
 TEST_F(Units, FollowAQuantityOfAnOption) {
   EXPECT_EQ(Done("convert --to lammps --sigma 48N/um --slip-force 15N --amplitude 1um "
-                 "--normal-load 0.05kN --contact-radius 0.25mm")
+                 "--normal-load 0.05kN")
                 .out,
             Done("convert --to lammps --sigma 48e6 --slip-force 15 --amplitude 1e-6 "
                  "--normal-load 50 --contact-radius 0.25e-3")

@@ -32,8 +32,7 @@ struct Branch {
 double RisingSlope(const BoucWenLaw& law, double force) {
   const double share = force / law.slip_force;
   const double against = share > 0 ? 1.0 : share < 0 ? -1.0 : 0.0;
-  return law.stiffness *
-         (1 - std::pow(std::abs(share), law.exponent) * (1 - law.beta + law.beta * against));
+  return law.stiffness * (1 - std::pow(std::abs(share), law.exponent) * (1 + against) / 2);
 }
 
 /// Way between two forces of a rising branch, ∫ dT/(dT/dx), in two parts with 0 between.
@@ -71,31 +70,19 @@ TEST(SteadyLaw, OfAModelIsTheModelsOwnSteadyLoop) {
 TEST(SteadyLaw, OfBoucWenMatchesIntegratedEquation) {
   constexpr double kStated = 1e-8;
   for (const double exponent : {1.0, 1.7, 4.0}) {
-    for (const double beta : {0.3, 0.5, 1.0}) {
-      for (const double amplitude : {0.5, 1.2, 4.0}) {
-        const BoucWenLaw law{3.0, 2.0, exponent, beta};
-        const Branch branch(amplitude);
-        const std::vector<double> force = branch.Of(law);
-        EXPECT_NEAR(force.front() / law.slip_force, -force.back() / law.slip_force, kStated);
-        for (std::size_t i = 0; i < force.size(); ++i) {
-          // What the way is off makes so much of force.
-          const double missing = (WayBetween(law, force.front(), force[i]) - branch.distance[i]) *
-                                 RisingSlope(law, force[i]);
-          EXPECT_NEAR(missing / law.slip_force, 0.0, kStated)
-              << exponent << ' ' << beta << ' ' << amplitude << ' ' << i;
-        }
+    for (const double amplitude : {0.5, 1.2, 4.0}) {
+      const BoucWenLaw law{3.0, 2.0, exponent};
+      const Branch branch(amplitude);
+      const std::vector<double> force = branch.Of(law);
+      EXPECT_NEAR(force.front() / law.slip_force, -force.back() / law.slip_force, kStated);
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        // What the way is off makes so much of force.
+        const double missing = (WayBetween(law, force.front(), force[i]) - branch.distance[i]) *
+                               RisingSlope(law, force[i]);
+        EXPECT_NEAR(missing / law.slip_force, 0.0, kStated)
+            << exponent << ' ' << amplitude << ' ' << i;
       }
     }
-  }
-}
-
-TEST(SteadyLaw, EnergyOfBoucAndWenIsDahlsForBetaAndNOfOne) {
-  constexpr double kEnergy = 1e-6;  // as stated
-  for (const double amplitude : {1e-8, 1e-7, 1e-6, 2e-5}) {
-    EXPECT_NEAR(LoopOf(BoucWenLaw{4e7, 40.0, 1.0, 1.0}, amplitude).energy /
-                    models::SteadyLoopEnergy(Model("dahl"), {4e7, 1.0, 40.0}, amplitude),
-                1.0, kEnergy)
-        << amplitude;
   }
 }
 
@@ -165,11 +152,10 @@ TEST(SteadyLaw, IsComparedWhereTheBranchesDifferMost) {
 
 TEST(SteadyLaw, RefusesInvalidLaw) {
   const Branch branch(1.0);
-  EXPECT_THROW(branch.Of(BoucWenLaw{-1.0, 1.0, 1.0, 0.5}), InvalidArgument);
-  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 0.0, 1.0, 0.5}), InvalidArgument);
-  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 0.5, 0.5}), InvalidArgument);
-  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 1.0, 0.0}), InvalidArgument);
-  EXPECT_THROW(LoopOf(BoucWenLaw{1.0, 1.0, 1.0, 0.5}, -1.0).energy, InvalidArgument);
+  EXPECT_THROW(branch.Of(BoucWenLaw{-1.0, 1.0, 1.0}), InvalidArgument);
+  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 0.0, 1.0}), InvalidArgument);
+  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 0.5}), InvalidArgument);
+  EXPECT_THROW(LoopOf(BoucWenLaw{1.0, 1.0, 1.0}, -1.0).energy, InvalidArgument);
   EXPECT_THROW(LoopOf(ModelLaw{&Model("dahl"), {0.0, 1.0, 1.0}}, 1.0).energy, InvalidArgument);
 }
 

@@ -55,12 +55,11 @@ def test_plan_warns_of_a_record_and_says_what_is_not_reached():
 
 
 def test_tradeoff_is_the_program_s():
-    result = mindahl.command("tradeoff", excitation="micro", tolerance="5%", **LAW)
-    expected = program("tradeoff", "--excitation", "micro", "--tolerance", "5%", *LAW_OPTIONS, "--json", "-")
+    result = mindahl.command("tradeoff", tolerance="5%", **LAW)
+    expected = program("tradeoff", "--tolerance", "5%", *LAW_OPTIONS, "--json", "-")
     assert result.to_json() == expected
     points = result.to_pandas()
-    assert len(points) == len(result.excitations[0].points)
-    assert set(points["excitation"]) == {"micro"}
+    assert len(points) == sum(len(excitation.points) for excitation in result.excitations)
 
 
 def test_an_option_that_takes_a_file_takes_arrays(tmp_path):

@@ -180,7 +180,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
      "to: 'brass' is unknown: must be one of"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
-     "normal_load and contact_radius have no effect unless to is lammps"),
+     "normal_load has no effect unless to is lammps"),
     (lambda: mindahl.track([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.5, 1.6, 1.7]), "record: no whole cycle"),
     (lambda: mindahl.track(SPHERE, average=0), "average: '0' is invalid"),
     (lambda: mindahl.track(SPHERE, average=1000), "fewer than average says"),

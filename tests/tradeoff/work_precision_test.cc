@@ -33,14 +33,13 @@ WorkPrecision Point(double cost, double force, std::optional<double> energy = st
 }
 
 TEST(CheapestWithin, IsTheSimplestOfTheCheapestWhoseErrorsAreWithin) {
-  const std::vector<WorkPrecision> points = {Point(1, 0.2, 1.0), Point(10.5, 0.01, 0.5),
+  const std::vector<WorkPrecision> points = {Point(1, 0.2, 1.0), Point(10.5, 0.01, 0.01),
                                              Point(10, 0.005, 0.01), Point(20, 0, 0)};
-  EXPECT_EQ(CheapestWithin(0.2, /*energy_counts=*/false, points), 0U);
-  EXPECT_EQ(CheapestWithin(0.1, /*energy_counts=*/false, points), 1U);  // a tenth is no difference
-  EXPECT_EQ(CheapestWithin(0.1, /*energy_counts=*/true, points), 2U);
-  EXPECT_EQ(CheapestWithin(1e-9, /*energy_counts=*/true, points), 3U);
+  EXPECT_EQ(CheapestWithin(1, points), 0U);
+  EXPECT_EQ(CheapestWithin(0.2, points), 1U);  // a tenth of the cost is no difference
+  EXPECT_EQ(CheapestWithin(1e-9, points), 3U);
   for (const double tolerance : {0.0, -0.1, 1.1, std::nan("")}) {
-    EXPECT_THROW(CheapestWithin(tolerance, false, points), InvalidArgument);
+    EXPECT_THROW(CheapestWithin(tolerance, points), InvalidArgument);
   }
 }
 
@@ -48,11 +47,11 @@ TEST(MeasureWorkPrecision, ComparesEachInItsOrder) {
   const BranchLaw law{1, 1.0 / 3, 1};
   const std::vector<double> drive = Displacements({.amplitude = 1.2, .cycles = 2});
   const auto points = MeasureWorkPrecision(law, {.displacement = drive});
-  const std::vector<Approximation> ways = AllApproximations(law);
+  const std::vector<Approximation> ways = AllApproximations();
   ASSERT_EQ(points.size(), ways.size());
   const auto exact = DefinedForce<Extended>(law, drive);
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    EXPECT_EQ(Describe(points[i].approximation), Describe(ways[i]));
+    EXPECT_EQ(points[i].approximation.method, ways[i].method);
     std::vector<double> force(drive.size());
     const double cost = Prepare(ways[i], law)({.displacement = drive}, force);
     EXPECT_DOUBLE_EQ(points[i].cost, 1.5 + cost / static_cast<double>(drive.size()));
@@ -63,14 +62,6 @@ TEST(MeasureWorkPrecision, ComparesEachInItsOrder) {
 }
 
 // ---
-
-TEST(Approximation, IsDescribedWithItsResolution) {
-  EXPECT_EQ(Describe({"spring", ""}), "spring");
-  EXPECT_EQ(Describe({"mindlin", "exact"}), "mindlin by exact");
-  EXPECT_EQ(Describe({"jenkins", "iwan", {.steps = 21}}), "jenkins by iwan, 21 elements");
-  EXPECT_EQ(Describe({"dahl", "table", {.steps = 64}}), "dahl by table, 64 intervals");
-  EXPECT_EQ(Describe({"dahl", "dopri5", {.tolerance = 1e-4}}), "dahl by dopri5, tolerance 0.0001");
-}
 
 TEST(Approximation, EvaluatesAsAskedFor) {
   // α = 0 under the name of Jenkins' model: a corner at Tc/σ = 0.75.
@@ -88,28 +79,18 @@ TEST(Approximation, RefusesUnknownNames) {
   EXPECT_THROW(Prepare({"stribeck", "exact"}, {1, 0.5, 1}), InvalidArgument);
   EXPECT_THROW(Prepare({"mindlin", "leapfrog"}, {1, 0.5, 1}), InvalidArgument);
   EXPECT_THROW(Prepare({"mindlin", ""}, {1, 0.5, 1}), InvalidArgument);
-  EXPECT_THROW(Describe({"mindlin", "leapfrog"}), InvalidArgument);
 }
 
 TEST(AllApproximations, NameTheModelsFromTheSimplestToTheExactOneThenItsMethods) {
-  EXPECT_EQ(ExactModel({1, 1.0 / 3, 1}), "mindlin");
-  EXPECT_EQ(ExactModel({1, 0.0, 1}), "jenkins");
-  EXPECT_EQ(ExactModel({1, 1.0, 1}), "mindlin-dahl");
-  for (const double alpha : {0.0, 1.0 / 3, 1.0}) {
-    const BranchLaw law{1, alpha, 1};
-    std::vector<std::string> models = {"spring",          "coulomb", "jenkins",
-                                       "simplified-dahl", "dahl",    "mindlin"};
-    if (alpha == 1) models.emplace_back("mindlin-dahl");
-    const std::vector<Approximation> all = AllApproximations(law);
-    std::set<std::string> names;
-    std::set<std::string> methods;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      EXPECT_EQ(all[i].model, i < models.size() ? models[i] : ExactModel(law));
-      EXPECT_TRUE(names.insert(Describe(all[i])).second) << Describe(all[i]);
-      methods.insert(all[i].method);
-    }
-    EXPECT_EQ(methods.size(), Methods().size() + 1);  // and "" of the limit laws
+  const std::vector<std::string> models = {"spring",          "coulomb", "jenkins",
+                                           "simplified-dahl", "dahl",    "mindlin-dahl"};
+  const std::vector<Approximation> all = AllApproximations();
+  std::set<std::string> methods;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].model, models[std::min(i, models.size() - 1)]);
+    methods.insert(all[i].method);
   }
+  EXPECT_EQ(methods.size(), Methods().size() + 1);  // and "" of the limit laws
 }
 
 }  // namespace

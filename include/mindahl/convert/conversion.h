@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mindahl/convert/steady_law.h"
@@ -16,7 +17,7 @@ enum class Form {
   kMasing,       ///< σ, α, Tc of Masing's law (Mindlin's, Full-Dahl)
   kDahl,         ///< σ, α, Tc of Dahl's own law
   kExponential,  ///< Dahl's own law of α = 1: LuGre's without σ₁ and Stribeck
-  kBoucWen,      ///< k, n, Tc of Bouc's and Wen's law at a given β
+  kBoucWen,      ///< k, n, Tc of Bouc's and Wen's law at β = γ
   kElements,     ///< n Jenkins elements in parallel
   kSpring,       ///< a tangential spring with Coulomb's limit, as discrete-element codes have it
 };
@@ -35,7 +36,7 @@ struct TargetRow {
   std::string_view title;
   Form form;
   std::span<const ParameterRow> parameters;
-  /// Lines that it reads, with keys of values in braces; one whose value is not known is left out.
+  /// Lines that it reads, with keys of values in braces.
   std::span<const std::string_view> lines;
 };
 
@@ -46,15 +47,7 @@ struct ConversionOptions {
   double amplitude = 0.0;    ///< X [m] of the steady loop that is to be reproduced, > 0
   double tolerance = 0.01;   ///< relative error allowed in force and energy, in (0, 1)
   std::size_t elements = 8;  ///< number of elements of Iwan's model, >= 1
-  double beta = 0.5;         ///< β of the Bouc–Wen law, in (0, 1]
-  std::optional<double> normal_load = {};     ///< of LAMMPS alone, N [N], > 0: friction is Tc/N
-  std::optional<double> contact_radius = {};  ///< likewise, a [m], > 0: Mindlin stiffness is kt·a
-};
-
-/// Amplitudes [m].
-struct AmplitudeRange {
-  double lower = 0.0;
-  double upper = 0.0;
+  std::optional<double> normal_load = {};  ///< of LAMMPS alone, N [N], > 0: friction is Tc/N
 };
 
 /// A parameter of the other law with its value.
@@ -66,9 +59,9 @@ struct Parameter {
 struct Conversion {
   SteadyLaw law;
   LoopError at_amplitude;  ///< at X
-  /// Amplitudes around X at which force and energy are within the tolerance, looked for from X/100
-  /// to 100·X; empty where X itself is not.
-  std::optional<AmplitudeRange> within = std::nullopt;
+  /// Least and largest amplitude [m] around X at which force and energy are within the tolerance,
+  /// looked for from X/100 to 100·X; empty where X itself is not.
+  std::optional<std::pair<double, double>> within = std::nullopt;
   std::vector<Parameter> parameters = {};  ///< in the target's own names and units
   /// Lines that the target reads; none of LAMMPS without a normal load.
   std::vector<std::string> input_lines = {};
@@ -81,8 +74,8 @@ struct Conversion {
 /// exponent of Bouc–Wen that of the least difference of force. Jenkins elements are the tangents of
 /// the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
-/// @throws InvalidArgument for an invalid law or option, InputError for a normal load or a contact
-///   radius that the target does not use
+/// @throws InvalidArgument for an invalid law or option, InputError for a normal load that the
+///   target does not use
 /// Cost: some 10 ms, of Bouc's and Wen's law some 0.5 s.
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options);

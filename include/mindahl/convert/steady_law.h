@@ -19,14 +19,12 @@ struct ModelLaw {
 };
 
 /// Bouc's and Wen's law, written by its stiffness and its limit:
-///   dT/dx = k·[1 − |T/Tc|ⁿ·(γ + β·sgn(T·ẋ))],   β + γ = 1
-/// Bouc (1967), Wen (1976). β = 1 with n = 1 is Dahl's law of α = 1; at β = 1/2 it unloads along a
-/// straight line.
+///   dT/dx = k·[1 − |T/Tc|ⁿ·(1 + sgn(T·ẋ))/2],   β = γ
+/// Bouc (1967), Wen (1976). It unloads along a straight line.
 struct BoucWenLaw {
   double stiffness = 0.0;   ///< k [N/m], > 0
   double slip_force = 0.0;  ///< Tc [N], > 0
   double exponent = 1.0;    ///< n [-], in 1 … 20
-  double beta = 0.5;        ///< β [-], in (0, 1]: what β + γ = 1 leaves is γ
 };
 
 using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
@@ -58,9 +56,9 @@ struct LoopError {
 /// @throws InvalidArgument for an invalid law or amplitude
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude);
 
-/// Fits Bouc's and Wen's law at a given β to a loop's amplitude, peak force and energy for each n,
-/// and takes the n whose force differs least.
-BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta);
+/// Fits Bouc's and Wen's law to a loop's amplitude, peak force and energy for each n, and takes the
+/// n whose force differs least.
+BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude);
 
 /// Returns the law of a model's form, at a shape exponent, whose steady loop at an amplitude has
 /// the peak force and the energy of a contact's.

@@ -18,22 +18,15 @@ struct Approximation {
   methods::Resolution resolution = {};
 };
 
-/// Returns "mindlin by table, 64 intervals", "spring".
-std::string Describe(const Approximation& approximation);
-
 /// Returns the approximation made ready for a contact, with the model's α where it prescribes one;
 /// what it costs is as of methods/method.h, of a limit law 0.
 /// @throws InvalidArgument for an unknown model or method, or as Prepare() of methods/method.h
 methods::Evaluator Prepare(const Approximation& approximation, const models::BranchLaw& law);
 
-/// Returns the Masing law with the contact's α, by the name under which it is cheapest: "mindlin"
-/// for α = 1/3, "jenkins" for α = 0, else "mindlin-dahl".
-std::string ExactModel(const models::BranchLaw& law);
-
 /// Returns the models a contact may be simplified to, simplest first, each in closed form (spring,
-/// coulomb, jenkins, simplified-dahl, dahl, mindlin, and the contact's own, named once), then that
-/// one by every other method, from coarse to fine.
-std::vector<Approximation> AllApproximations(const models::BranchLaw& law);
+/// coulomb, jenkins, simplified-dahl, dahl, and its own, mindlin-dahl), then that one by every
+/// other method, from coarse to fine.
+std::vector<Approximation> AllApproximations();
 
 /// Errors of a response, relative [–].
 struct Precision {
@@ -59,11 +52,10 @@ struct WorkPrecision {
 std::vector<WorkPrecision> MeasureWorkPrecision(const models::BranchLaw& law,
                                                 const methods::Drive& drive);
 
-/// Returns the cheapest point whose largest force error, and error of energy where that counts, is
-/// within a tolerance; the first of equals: costs within a tenth of each other are equal, and
-/// simpler models come first. The exact one always is within.
+/// Returns the cheapest point whose largest force error and error of energy are within a tolerance;
+/// the first of equals: costs within a tenth of each other are equal, and simpler models come
+/// first. The exact one always is within.
 /// @throws InvalidArgument for a tolerance outside (0, 1]
-std::size_t CheapestWithin(double tolerance, bool energy_counts,
-                           std::span<const WorkPrecision> points);
+std::size_t CheapestWithin(double tolerance, std::span<const WorkPrecision> points);
 
 }  // namespace mindahl::tradeoff
