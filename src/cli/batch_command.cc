@@ -22,27 +22,25 @@ struct BatchCommandOptions {
   std::string report_directory;
 };
 
-std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const Console& console) {
-  const auto write_page = [&](const report::Report& report, std::size_t k) {
-    io::WriteFileAtomically(
-        std::filesystem::path(options.report_directory) / request::PageName(k),
-        ToPage(report, ProvenanceOf(console.command_line, {&options.request.files[k], 1})));
-  };
-  return request::FitFiles(options.request, options.strict, options.threads,
-                           options.report_directory.empty() ? request::WritePage() : write_page);
-}
-
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
   Validate(request.contact);  // before a directory is made
   MakeFitOptions(request);
-  if (const std::string& directory = options.report_directory; !directory.empty()) {
+  const std::filesystem::path directory = options.report_directory;
+  request::WritePage write_page;
+  if (!directory.empty()) {
     std::error_code error;
     std::filesystem::create_directory(directory, error);
-    if (error) Refuse("--report: cannot make '{}': {}", directory, error.message());
+    if (error) Refuse("--report: cannot make '{}': {}", directory.string(), error.message());
+    write_page = [&](const report::Report& report, std::size_t k) {
+      io::WriteFileAtomically(
+          directory / request::PageName(k),
+          ToPage(report, ProvenanceOf(console.command_line, {&request.files[k], 1})));
+    };
   }
-  const std::vector<BatchEntry> fits = FitInThreads(options, console);
+  const std::vector<BatchEntry> fits =
+      FitFiles(request, options.strict, options.threads, write_page);
   for (const BatchEntry& fit : fits) {
     Say("batch: note", fit.notes, console);
     if (!fit.fault.empty()) {
@@ -50,8 +48,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
     }
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
-  if (!options.report_directory.empty()) {
-    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
+  if (!directory.empty()) {
+    io::WriteFileAtomically(directory / "index.html",
                             IndexPage(fits, ProvenanceOf(console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, ToJson(fits, options.output),
@@ -78,8 +76,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
       ->required();
-  group.Add("--json", options->json_path,
-            "the answer of fit for each file as JSON; - for standard output alone", "PATH");
+  group.AddJson(options->json_path);
   group.Add(
       "--report", options->report_directory,
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",

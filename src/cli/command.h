@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,11 +48,6 @@ CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::stri
 /// @param names  with their dashes, in the order of the help
 void ShowFirst(CLI::App& command, std::vector<std::string> names);
 
-/// Lists the words in the help; a word that is none of them is refused with the nearest.
-CLI::Validator OneOf(const std::vector<std::string_view>& words);
-/// Refuses all but whole numbers: CLI11 itself reads -1 as 2⁶⁴ − 1.
-CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most);
-inline constexpr std::uint64_t kMostSeed = std::numeric_limits<std::uint64_t>::max();
 /// Transforms a quantity with its unit, "50 N", to the number in `unit`.
 CLI::Validator InUnit(const std::string& unit);
 
@@ -84,8 +78,14 @@ class OptionGroup {
   /// Adds an option that takes a whole number.
   template <typename Value>
   CLI::Option* AddCount(const std::string& option, Value& value, const std::string& help,
-                        std::uint64_t least = 1, std::uint64_t most = 1'000'000'000) const {
-    return AddShown(option, value, help)->check(WholeNumber(least, most));
+                        std::int64_t least = 1, std::int64_t most = 1'000'000'000) const {
+    return AddShown(option, value, help)->check(CLI::Range(least, most).description(""));
+  }
+  /// Adds an option that takes one of some words.
+  CLI::Option* AddWord(const std::string& option, std::string& word,
+                       const std::vector<std::string_view>& words, const std::string& help) const {
+    return AddShown(option, word, help)
+        ->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
   }
   /// Adds an option whose words stand for values, the first for the one that it has.
   template <typename Value>
@@ -93,8 +93,7 @@ class OptionGroup {
                          std::vector<std::pair<std::string, Value>> choices,
                          const std::string& help) const {
     const auto text = std::make_shared<std::string>(choices.front().first);
-    return AddShown(option, *text, help)
-        ->check(OneOf(NamesOf(choices, &std::pair<std::string, Value>::first)))
+    return AddWord(option, *text, NamesOf(choices, &std::pair<std::string, Value>::first), help)
         ->each([text, &target, choices](const std::string& word) {
           const auto named = [&](const auto& choice) { return choice.first == word; };
           target = std::ranges::find_if(choices, named)->second;
@@ -107,12 +106,29 @@ class OptionGroup {
                        const std::string& help, const std::string& type) const {
     return Grouped(command_.add_option_function<Text>(option, read, help), type);
   }
-  CLI::Option* AddFlag(const std::string& option, bool& value, const std::string& help) const;
+  /// Adds an option that may be repeated, each of whose texts a function reads.
+  CLI::Option* AddEach(const std::string& option,
+                       const std::function<void(const std::string&)>& read, const std::string& help,
+                       const std::string& type) const {
+    const auto read_all = [read](const std::vector<std::string>& texts) {
+      std::ranges::for_each(texts, read);
+    };
+    return AddRead<std::vector<std::string>>(option, read_all, help, type)->allow_extra_args(false);
+  }
+  CLI::Option* AddFlag(const std::string& option, bool& value, const std::string& help) const {
+    // CLI11 itself reads --flag=5 as five times --flag.
+    const CLI::Validator is_one = CLI::IsMember({"true", "false"}).description("");
+    return Grouped(command_.add_flag(option, value, help)->check(is_one), "");
+  }
   /// Adds a flag that may have a word of its own: "--strict{adequate}".
   CLI::Option* AddFlagWithWord(const std::string& option,
                                const std::function<void(const std::string&)>& read,
                                const std::string& help) const {
     return Grouped(command_.add_flag(option, help)->each(read), "");
+  }
+  /// Adds --json, where the answer goes for scripts.
+  CLI::Option* AddJson(std::string& path) const {
+    return Add("--json", path, "answer as JSON; - for standard output alone", "PATH");
   }
 
  private:
@@ -124,11 +140,6 @@ class OptionGroup {
 
 inline constexpr const char* kPlainGroup = "Options";
 
-/// Returns the options of a command in their order, without words that are no options.
-std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
-/// Returns the name of one, without its dashes.
-inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
-
 /// Reads a number > 0, "0.01", or the same in percent, "1%"; empty where the text is neither.
 std::optional<double> ParseShare(std::string_view text);
 
@@ -136,35 +147,26 @@ std::optional<double> ParseShare(std::string_view text);
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
 
 /// Adds --path, a file with an imposed displacement, and --displacement, its column.
-/// @param remark  goes on with the help of --path
 /// @returns the former
-CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column,
-                     const std::string& remark);
+CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column);
 
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
 
 // --- options that make a request: for a contact, for a law, and for a fit
 
-/// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
-/// other option and, unless it is exact, one standard uncertainty, in percent of the number's
-/// magnitude with %. Either may have a unit, "50 N ± 0.5 N"; one at the end is of both, "50±0.5 N".
+/// Reads "50", "50±0.5", "50+-0.5", "50+/-0.5" or "50±1%": a number and, unless it is exact, one
+/// standard uncertainty. Either may have a unit; one at the end is of both, "50±0.5 N".
 /// @param unit  that of a number
 /// @throws InputError naming the option, the text, the rule and the remedy
 contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
                                             std::string_view unit);
 
-/// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance, each
-/// with a standard uncertainty.
-void AddContactOptions(CLI::App& command, ContactOptions& options);
-
-/// Adds --friction, likewise.
-void AddFrictionOption(CLI::App& command, ContactOptions& options);
+/// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance, and
+/// --friction where it is no result, each with a standard uncertainty.
+void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction = false);
 
 /// Adds --sigma, --alpha and --slip-force.
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
-
-/// Adds these and what describes a contact, --friction included.
-void AddLawOptions(CLI::App& command, LawOptions& request);
 
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
 /// slip is only approached.
@@ -206,10 +208,7 @@ std::vector<std::string> InputsOf(const CLI::App& command);
 /// @throws InputError naming both
 void RequireDistinctFiles(std::span<const std::string> files);
 
-/// Returns a word as a shell takes it: in single quotes where it needs them.
-std::string ShellWord(std::string_view word);
-
-/// Returns the command line as a shell takes it, the program by its own name.
+/// Returns the command line as a shell takes it, words in single quotes where they need them.
 std::string CommandLine(int argc, const char* const* argv);
 
 /// Returns what is needed to make a result again: the command line, and digests of the files.

@@ -67,10 +67,8 @@ void AddContactCommand(CLI::App& app, Console& console) {
        "    --youngs-modulus-1 210e9 --poisson-1 0.3 --youngs-modulus-2 210e9 --poisson-2 0.3",
        "mindahl contact --friction 0.3 --normal-load 50 --contact-radius 2.5e-4 --compliance "
        "4.2e-11"});
-  AddContactOptions(command, options->contact);
-  AddFrictionOption(command, options->contact);
-  OptionGroup(command, kPlainGroup)
-      .Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
+  AddContactOptions(command, options->contact, /*has_friction=*/true);
+  OptionGroup(command, kPlainGroup).AddJson(options->json_path);
   OnRun(command, [options, &console] { RunContact(*options, console); });
 }
 

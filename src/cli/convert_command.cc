@@ -170,19 +170,17 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   contact.Add("fit", options->fit,
               "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
   AddLawParameters(contact, options->law);
-  contact
-      .Add("--from", options->from,
-           "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
-           "fit's, else masing")
-      ->check(OneOf({"masing", "dahl"}));
+  contact.AddWord(
+      "--from", options->from, {"masing", "dahl"},
+      "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
+      "fit's, else masing");
   contact.AddQuantity("--amplitude", options->amplitude,
                       "amplitude X of the contact's steady loop [m], without the rig's travel", "M",
                       "m");
   const OptionGroup result(command, "What it becomes");
   result
-      .Add("--to", options->to, "law or program")
-      ->required()
-      ->check(OneOf(NamesOf(convert::Targets(), &TargetRow::name)));
+      .AddWord("--to", options->to, NamesOf(convert::Targets(), &TargetRow::name), "law or program")
+      ->required();
   AddTolerance(result, options->options.tolerance,
                "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%");
   result.AddCount("--elements", options->options.elements, "number of elements of --to iwan", 1,
@@ -192,7 +190,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
-  outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
+  outputs.AddJson(options->json_path);
   OnRun(command, [options, &console] { RunConvert(*options, console); });
 }
 

@@ -66,7 +66,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   AddFitOptions(command, options->request);
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");
-  group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
+  group.AddJson(options->json_path);
   group.Add("--residuals", options->residuals_path,
             "measured and fitted force of every sample as CSV", "PATH");
   group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");

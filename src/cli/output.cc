@@ -34,17 +34,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One file under one name or two, of which neither need be there yet; a device, a terminal or a
-/// pipe is none, as writing to it replaces nothing.
+/// True of one file under one name or two; a device, a terminal or a pipe is none, as writing to it
+/// replaces nothing.
 bool IsSameFile(const fs::path& first, const fs::path& second) {
   std::error_code error;
-  if (fs::equivalent(first, second, error)) return fs::is_regular_file(first, error);
-  if (fs::exists(first, error) || fs::exists(second, error)) return false;
-  const auto place = [&](const fs::path& path) {
-    const fs::path parent = path.parent_path();
-    return fs::weakly_canonical(parent.empty() ? fs::path(".") : parent, error) / path.filename();
-  };
-  return place(first) == place(second);
+  return fs::equivalent(first, second, error) && fs::is_regular_file(first, error);
 }
 
 void RequireWritable(const std::string& option, const std::string& path) {
@@ -58,37 +52,26 @@ void RequireWritable(const std::string& option, const std::string& path) {
   }
 }
 
-/// Returns the options that were given, of a command and of the program, whose value is called so.
-std::vector<const CLI::Option*> GivenOf(const CLI::App& command,
-                                        std::initializer_list<std::string_view> types) {
-  const auto is_given = [&](const CLI::Option* option) {
-    return option->count() > 0 && std::ranges::find(types, option->get_type_name()) != types.end();
-  };
-  std::vector<const CLI::Option*> options = command.get_options(is_given);
-  std::ranges::copy(command.get_parent()->get_options(is_given), std::back_inserter(options));
-  return options;
-}
-
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
-  std::vector<std::pair<std::string, std::string>> checked;  // options with their paths
-  for (const CLI::Option* each : GivenOf(command, {"PATH", "DIR"})) {
-    const std::string option = "--" + NameOf(*each);
+  std::vector<std::string> outputs;
+  for (const CLI::Option* each : command.get_options()) {
+    const std::string type = each->get_type_name();
+    if (each->count() == 0 || (type != "PATH" && type != "DIR")) continue;
+    const std::string option = each->get_name();
     const std::string& path = each->results().back();
     if (path.empty()) continue;
-    const bool is_stdout = path == "-";
-    if (!is_stdout && each->get_type_name() == "PATH") RequireWritable(option, path);
+    if (path != "-" && type == "PATH") RequireWritable(option, path);
     if (option == "--plot") io::RequirePlotName(path);
     for (const std::string& input : inputs) {
-      if (is_stdout || !IsSameFile(path, input)) continue;
+      if (!IsSameFile(path, input)) continue;
       Refuse("{}: '{}' is the input '{}', which it would replace: write to another file", option,
              path, input);
     }
-    for (const auto& [other, other_path] : checked) {
-      if (!(is_stdout ? other_path == "-" : IsSameFile(other_path, path))) continue;
-      Refuse("{} and {} both write to '{}': give each a file of its own", other, option, path);
+    if (std::ranges::find(outputs, path) != outputs.end() && path != "/dev/null") {
+      Refuse("{}: '{}' is another output too: give each a file of its own", option, path);
     }
-    checked.emplace_back(option, path);
+    outputs.push_back(path);
   }
 }
 
@@ -96,8 +79,11 @@ void RequireOutputs(const CLI::App& command) {
 
 std::vector<std::string> InputsOf(const CLI::App& command) {
   std::vector<std::string> inputs;
-  for (const CLI::Option* option : GivenOf(command, {"FILE"})) {
-    inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  for (const CLI::App* app : {&command, command.get_parent()}) {
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->get_type_name() != "FILE") continue;
+      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+    }
   }
   return inputs;
 }
@@ -128,18 +114,15 @@ report::Provenance ProvenanceOf(const std::string& command_line,
   return provenance;
 }
 
-std::string ShellWord(std::string_view word) {
+std::string CommandLine(int argc, const char* const* argv) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,=+@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
-    return std::string(word);
-  }
-  return fmt::format("'{}'", CLI::detail::find_and_replace(std::string(word), "'", "'\\''"));
-}
-
-std::string CommandLine(int argc, const char* const* argv) {
   std::string line = "mindahl";
-  for (int i = 1; i < argc; ++i) line.append(" ").append(ShellWord(argv[i]));
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
+    line += is_plain ? " " + word : " '" + CLI::detail::find_and_replace(word, "'", "'\\''") + "'";
+  }
   return line;
 }
 

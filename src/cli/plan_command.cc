@@ -260,7 +260,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
            "NAME=ERROR")
       ->delimiter(',');
   const OptionGroup output(command, "Output");
-  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
+  output.AddJson(options->json);
   output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
   OnRun(command, [options, &console] { RunPlan(*options, console); });
 }

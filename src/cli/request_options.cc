@@ -17,7 +17,8 @@ using identification::Term;
 
 namespace {
 
-constexpr const char* kGroup = "What is known of the contact";
+constexpr const char* kContactGroup = "What is known of the contact";
+constexpr const char* kColumnGroup = "Columns and units";
 
 /// Adds an option for what is known exactly or with a standard uncertainty.
 void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
@@ -25,7 +26,7 @@ void AddKnown(CLI::App& command, const std::string& name, std::optional<Uncertai
   const auto read = [&target, name, unit](const std::string& text) {
     target = ParseUncertainValue(text, name, unit);
   };
-  OptionGroup(command, kGroup).AddRead(name, read, help, type + "[+-U]");
+  OptionGroup(command, kContactGroup).AddRead(name, read, help, type + "[+-U]");
 }
 
 }  // namespace
@@ -47,27 +48,19 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
   if (Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
     stated += magnitude.substr(BeginOfUnit(magnitude));
   }
-  std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
   const std::optional<double> value = ParseQuantity(stated, unit);
-  if (value && standard_error && is_percentage && std::isfinite(*value)) {
-    *standard_error *= 0.01 * std::abs(*value);
+  std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
+  if (value && standard_error && is_percentage) *standard_error *= 0.01 * std::abs(*value);
+  if (value && standard_error && std::isfinite(*standard_error) && *standard_error >= 0) {
+    return {*value, *standard_error};
   }
-  if (standard_error && !(std::isfinite(*standard_error) && *standard_error >= 0)) {
-    Refuse(
-        "{}: the standard uncertainty in '{}' is {}: must be finite and >= 0; leave it "
-        "out where the value is exact",
-        option, text, *standard_error);
-  }
-  if (!value || !standard_error) {
-    Refuse(
-        "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
-        "50+-0.5, 50+/-0.5 or 50±1%",
-        option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit));
-  }
-  return {*value, *standard_error};
+  Refuse(
+      "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
+      "50+-0.5, 50+/-0.5 or 50±1%",
+      option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit));
 }
 
-void AddContactOptions(CLI::App& command, ContactOptions& options) {
+void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction) {
   const auto read = [&options](const std::string& text) {
     std::vector<UncertainValue> each;
     for (const std::string_view load : PartsOf(text, ',')) {
@@ -75,7 +68,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options) {
     }
     SetNormalLoads(options, each);
   };
-  OptionGroup(command, kGroup)
+  OptionGroup(command, kContactGroup)
       .AddRead("--normal-load", read,
                "normal load N [N]; in fit one for all files or one a file: 25,50,100;\nlike all "
                "below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n50+/-0.5, 50±1%",
@@ -94,9 +87,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options) {
            "M");
   AddKnown(command, "--compliance", options.known.tangential_compliance,
            "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance", "1/Pa", "1/PA");
-}
-
-void AddFrictionOption(CLI::App& command, ContactOptions& options) {
+  if (!has_friction) return;
   AddKnown(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]", "-",
            "MU");
 }
@@ -108,12 +99,6 @@ void AddLawParameters(const OptionGroup& group, LawOptions& law) {
   group.AddQuantity("--slip-force", law.slip_force, "slip force Tc [N]", "N", "N");
 }
 
-void AddLawOptions(CLI::App& command, LawOptions& request) {
-  AddLawParameters(OptionGroup(command, "Parameters"), request);
-  AddContactOptions(command, request.contact);
-  AddFrictionOption(command, request.contact);
-}
-
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
   const double slip = models::GrossSlipDisplacement(law);
   return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
@@ -122,60 +107,41 @@ double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) 
 
 namespace {
 
-constexpr std::string_view kFitIt = "fit";
-constexpr const char* kColumnGroup = "Columns and units";
-
 /// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
 std::string_view UnitOf(std::string_view parameter) {
   const Term* term = identification::FindTerm(identification::TermNameOf(parameter));
   return term == nullptr ? "-" : term->unit;
 }
 
-/// Holds the option that a text is read for.
-struct Asked {
-  std::string_view option;
-  std::string_view form;  // how to write it, for messages
-  std::string_view unit = "-";
-};
-
-double ParseNumber(std::string_view text, const Asked& asked) {
-  if (const std::optional<double> value = ParseQuantity(text, asked.unit)) return *value;
-  Refuse("{}: '{}' is not a number{}: write {}", asked.option, text,
-         asked.unit == "-" ? "" : fmt::format(" or a quantity in {}", asked.unit), asked.form);
+/// Returns what was read of a text.
+/// @param form  how to write it
+template <typename Value>
+Value Read(const std::optional<Value>& value, std::string_view option, std::string_view text,
+           std::string_view form) {
+  if (value) return *value;
+  Refuse("{}: '{}' is invalid: write {}", option, text, form);
 }
 
-/// Returns "left<separator>right".
-std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
-                                                    const Asked& asked) {
-  const std::size_t at = text.find(separator);
-  if (at != std::string_view::npos && at > 0 && at + 1 < text.size()) {
-    return {text.substr(0, at), text.substr(at + 1)};
-  }
-  Refuse("{}: '{}' is incomplete: write {}", asked.option, text, asked.form);
+/// Returns what is on the left and on the right of a separator; nothing right where there is none.
+std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator) {
+  const std::size_t at = std::min(text.find(separator), text.size());
+  return {text.substr(0, at), text.substr(std::min(at + 1, text.size()))};
 }
 
-Interval ParseInterval(std::string_view text, const Asked& asked) {
-  const auto [lower, upper] = Split(text, ':', asked);
-  const Interval interval = {ParseNumber(lower, asked), ParseNumber(upper, asked)};
-  if (interval.lower < interval.upper) return interval;
-  Refuse("{}: '{}' is empty: the first number must be the smaller", asked.option, text);
+std::optional<Interval> ParseInterval(std::string_view text, std::string_view unit) {
+  const auto [low, high] = Split(text, ':');
+  const std::optional<double> lower = ParseQuantity(low, unit);
+  const std::optional<double> upper = ParseQuantity(high, unit);
+  if (!lower || !upper || !(*lower < *upper)) return std::nullopt;
+  return Interval{*lower, *upper};
 }
 
-identification::Prior ParsePrior(std::string_view text, const Asked& asked) {
-  const UncertainValue prior = ParseUncertainValue(text, asked.option, asked.unit);
-  if (prior.standard_error > 0) return {prior.value, prior.standard_error};
-  Refuse("{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value",
-         asked.option, text);
-}
-
-loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
-  const auto [first, last] = Split(text, ':', asked);
-  const auto count = [&](std::string_view digits) {
-    const auto number = NumberIn<std::size_t>(digits);
-    if (number && *number >= 1) return *number;
-    Refuse("{}: '{}' is not a whole number from 1 on: write {}", asked.option, digits, asked.form);
-  };
-  return {.first = count(first), .last = count(last)};
+std::optional<loop::CountRange> ParseCountRange(std::string_view text) {
+  const auto [from, to] = Split(text, ':');
+  const auto first = NumberIn<std::size_t>(from);
+  const auto last = NumberIn<std::size_t>(to);
+  if (!first || !last || *first < 1) return std::nullopt;
+  return loop::CountRange{.first = *first, .last = *last};
 }
 
 /// Gives a parameter a value, unless it has one.
@@ -187,92 +153,45 @@ void GiveOnce(std::string_view option, std::string_view name, const Value& value
 
 /// Reads COL, COL=fit or COL=C.
 void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
-  constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
-  const std::size_t at = text.rfind('=');
-  if (text.empty() || at == 0 || at + 1 == text.size()) {
-    Refuse("--covariate: '{}' is incomplete: write {}", text, kForm);
-  }
+  const std::size_t at = std::min(text.rfind('='), text.size());
   fit.covariates.push_back(text.substr(0, at));
-  if (at == std::string::npos || text.substr(at + 1) == kFitIt) return;
+  if (at == text.size() || text.substr(at) == "=fit") return;
   GiveOnce("--covariate", identification::NameOfCovariate(fit.covariates.back()),
-           ParseNumber(std::string_view(text).substr(at + 1), {"--covariate", kForm}), fit.fixed);
+           Read(ParseQuantity(text.substr(at + 1), "-"), "--covariate", text,
+                "COL[=C|fit], e.g. pressure=50"),
+           fit.fixed);
 }
 
 /// Reads fit, a number, or a number with its standard uncertainty.
 void ReadRig(const std::string& text, identification::FitOptions& fit) {
-  constexpr std::string_view kOption = "--rig-stiffness";
   constexpr const char* kName = "rig_stiffness";
-  if (text == kFitIt) {
+  if (text == "fit") {
     fit.terms.emplace_back(kName);
     return;
   }
-  const UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
+  const UncertainValue stated = ParseUncertainValue(text, "--rig-stiffness", "N/m");
   RequirePositive("--rig-stiffness [N/m]", stated.value);
-  if (stated.standard_error == 0) return GiveOnce(kOption, kName, stated.value, fit.fixed);
+  if (stated.standard_error == 0)
+    return GiveOnce("--rig-stiffness", kName, stated.value, fit.fixed);
   fit.terms.emplace_back(kName);
   fit.priors[kName] = {stated.value, stated.standard_error};
 }
 
-/// Reads "none" or "auto" alone, or names of terms.
-void ReadTerms(const std::vector<std::string>& names, FitRequest& request) {
-  for (const std::string_view alone : {"none", "auto"}) {
-    if (std::ranges::find(names, alone) == names.end()) continue;
-    if (names.size() > 1) {
-      Refuse("--terms: '{}' stands alone: write auto, none or names", alone);
-    }
-    request.chooses_terms = alone == "auto";
-    return;
-  }
-  request.terms = names;
-}
-
-/// Reads "cycles=2:9" and the like, of `--select`; or, of its older names, "2:9" alone.
-void ReadSelection(std::string_view what, std::string_view range, const std::string& option,
-                   FitRequest& request) {
-  const Asked counted{option, "LO:HI, counted from 1, e.g. 2:5"};
-  if (what == "cycles") {
-    request.fit.preparation.cycles = ParseCountRange(range, counted);
-  } else if (what == "samples") {
-    request.fit.preparation.samples = ParseCountRange(range, counted);
-  } else if (what == "time") {
-    request.time_window = ParseInterval(range, {option, "LO:HI in seconds", "s"});
+/// Reads "cycles=2:9" and the like, of `--select`.
+void ReadSelection(std::string_view text, std::string_view option, FitRequest& request) {
+  const auto [what, range] = Split(text, '=');
+  constexpr std::string_view kForm =
+      "cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s] or load=LO:HI [N]";
+  loop::PreparationOptions& preparation = request.fit.preparation;
+  if (what == "time") {
+    request.time_window = Read(ParseInterval(range, "s"), option, text, kForm);
   } else if (what == "load") {
-    request.fit.preparation.load_window = ParseInterval(range, {option, "LO:HI in newtons", "N"});
+    preparation.load_window = Read(ParseInterval(range, "N"), option, text, kForm);
   } else {
-    RequireOneOf("--select", what,
-                 std::vector<std::string_view>{"cycles", "samples", "time", "load"});
+    const bool is_of_cycles = what == "cycles";
+    const auto counts = is_of_cycles || what == "samples" ? ParseCountRange(range) : std::nullopt;
+    (is_of_cycles ? preparation.cycles : preparation.samples) = Read(counts, option, text, kForm);
   }
-}
-
-void AddSelections(CLI::App& command, FitRequest& request) {
-  const OptionGroup group(command, kColumnGroup);
-  group
-      .AddRead<std::vector<std::string>>(
-          "--select",
-          [&request](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) {
-              const auto [what, range] =
-                  Split(text, '=', {"--select", "cycles=LO:HI, time, load or samples"});
-              ReadSelection(what, range, fmt::format("--select {}", what), request);
-            }
-          },
-          "fit only cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s]\nor load=LO:HI "
-          "[N]; repeatable; what is left out, but by time, still\ncounts as loading history",
-          "WHAT=LO:HI")
-      ->allow_extra_args(false);
-  const OptionGroup hidden(command, "");
-  for (const auto& [name, window] : {std::pair("--cycles", "cycles"),
-                                     {"--samples", "samples"},
-                                     {"--time-window", "time"},
-                                     {"--load-window", "load"}}) {
-    hidden.AddRead(
-        name,
-        [&request, option = std::string(name), what = std::string_view(window)](
-            const std::string& text) { ReadSelection(what, text, option, request); },
-        "", "LO:HI");
-  }
-  group.AddChoice("--trim", request.trim, {{"on", true}, {"off", false}},
-                  "leave out what at the ends of a record is not the test, and say which\nrows");
 }
 
 std::string DescribeModels() {
@@ -295,17 +214,14 @@ std::string DescribeTerms() {
 
 std::string DescribeParameters() {
   std::vector<std::string> words;
-  for (const Term& term : identification::Terms()) {
-    if (term.of_column) continue;  // --covariate takes its value
-    words.push_back(fmt::format("{} [{}],", term.name, term.unit));
+  for (const Term& term : identification::Terms()) {  // --covariate takes a column's value
+    if (!term.of_column) words.push_back(fmt::format("{} [{}]", term.name, term.unit));
   }
-  words.back().pop_back();
   constexpr std::size_t kWidth = 69;  // of a help text
-  const std::vector<std::string_view> views(words.begin(), words.end());
   return fmt::format(
       "hold a parameter at a value in its unit, and add its term:\n{}\n"
       "offsets and drifts of several files are numbered, force_offset_2",
-      fmt::join(LinesOf(views, kWidth), "\n"));
+      fmt::join(LinesOf({words.begin(), words.end()}, kWidth), "\n"));
 }
 
 }  // namespace
@@ -355,42 +271,46 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   group.AddRead(
       "--rig-stiffness", [&fit](const std::string& text) { ReadRig(text, fit); },
       "stiffness of the rig in series [N/m]; K+-U or K+-3% fits it about K", "K[+-U]|fit");
-  group
-      .AddRead<std::vector<std::string>>(
-          "--covariate",
-          [&fit](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) ReadCovariate(text, fit);
-          },
-          "additional force C·column, C [N/unit], by default fitted; repeatable", "COL[=C|fit]")
-      ->allow_extra_args(false);
+  group.AddEach(
+      "--covariate", [&fit](const std::string& text) { ReadCovariate(text, fit); },
+      "additional force C·column, C [N/unit], by default fitted; repeatable", "COL[=C|fit]");
   group
       .AddRead<std::vector<std::string>>(
           "--terms",
-          [&options](const std::vector<std::string>& names) { ReadTerms(names, options); },
+          [&options](const std::vector<std::string>& names) {
+            options.chooses_terms = names == std::vector<std::string>{"auto"};
+            if (!options.chooses_terms && names != std::vector<std::string>{"none"}) {
+              options.terms = names;
+            }
+          },
           DescribeTerms(), "none|auto|NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
+  // parse(text, unit) returns the value that a parameter is given, or nothing.
   const auto add_assignments = [&](const char* option, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
-    group.AddRead<std::vector<std::string>>(
+    group.AddEach(
         option,
-        [&target, option, form, parse](const std::vector<std::string>& texts) {
-          for (const std::string& text : texts) {
-            const auto [name, value] = Split(text, '=', {option, form});
-            const Asked asked{option, form, UnitOf(name)};
-            GiveOnce(option, name, parse(value, asked), target);
-          }
+        [&target, option, form, parse](const std::string& text) {
+          const auto [name, value] = Split(text, '=');
+          GiveOnce(option, name, Read(parse(value, UnitOf(name)), option, text, form), target);
         },
         help, type);
   };
+  const auto parse_prior = [](std::string_view text, std::string_view unit) {
+    const UncertainValue prior = ParseUncertainValue(text, "--prior", unit);
+    using identification::Prior;
+    return prior.standard_error > 0 ? std::optional(Prior{prior.value, prior.standard_error})
+                                    : std::nullopt;
+  };
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
-  add_assignments("--fix", fit.fixed, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
-  add_assignments("--start", fit.start, "NAME=VALUE", kValue, &ParseNumber,
+  add_assignments("--fix", fit.fixed, "NAME=VALUE", kValue, &ParseQuantity, DescribeParameters());
+  add_assignments("--start", fit.start, "NAME=VALUE", kValue, &ParseQuantity,
                   "start the search from a value instead of the data's");
   add_assignments("--bound", fit.bounds, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2", &ParseInterval,
                   "keep a parameter between two values");
   add_assignments("--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
-                  &ParsePrior,
+                  parse_prior,
                   "prior value and standard uncertainty of a parameter, in its unit [SI]");
   group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
   group.AddQuantity("--force-noise", fit.force_noise,
@@ -411,8 +331,24 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
 
 void AddFitOptions(CLI::App& command, FitRequest& request) {
   AddColumnOptions(command, request.columns);
-  AddSelections(command, request);
   const OptionGroup group(command, kColumnGroup);
+  group.AddEach(
+      "--select", [&request](const std::string& text) { ReadSelection(text, "--select", request); },
+      "fit only cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s]\nor load=LO:HI "
+      "[N]; repeatable; what is left out, but by time, still\ncounts as loading history",
+      "WHAT=LO:HI");
+  // Older names.
+  for (const auto& [option, what] : {std::pair("--cycles", "cycles="),
+                                     {"--samples", "samples="},
+                                     {"--time-window", "time="},
+                                     {"--load-window", "load="}}) {
+    const auto read = [&request, option, what](const std::string& range) {
+      ReadSelection(what + range, option, request);
+    };
+    OptionGroup(command, "").AddRead(option, read, "", "LO:HI");
+  }
+  group.AddChoice("--trim", request.trim, {{"on", true}, {"off", false}},
+                  "leave out what at the ends of a record is not the test, and say which\nrows");
   io::RecordColumns& columns = request.columns;
   group.Add("--with", columns.with,
             "another file of the same test, whose columns follow those of the file", "FILE");
@@ -424,17 +360,17 @@ void AddFitOptions(CLI::App& command, FitRequest& request) {
 
 void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {
   const auto read = [&strictness](const std::string& given) {
-    RequireOneOf("--strict", given,
-                 std::vector<std::string_view>{"adequate", "doubtful", "true", "false"});
     strictness = given == "doubtful" ? Strictness::kDoubtful
                  : given == "false"  ? Strictness::kNone
                                      : Strictness::kAdequate;  // strict = true of a configuration
   };
-  group.AddFlagWithWord("--strict{adequate}", read,
-                        otherwise +
-                            " unless the model is adequate and every free\n"
-                            "parameter identifiable; --strict=doubtful accepts a doubtful\n"
-                            "model and parameters that are effective");
+  group
+      .AddFlagWithWord("--strict{adequate}", read,
+                       otherwise +
+                           " unless the model is adequate and every free\n"
+                           "parameter identifiable; --strict=doubtful accepts a doubtful\n"
+                           "model and parameters that are effective")
+      ->check(CLI::IsMember({"adequate", "doubtful", "true", "false"}).description(""));
 }
 
 }  // namespace mindahl::cli

@@ -1,6 +1,5 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
-#include <cmath>
 #include <numeric>
 
 #include "cli/command.h"
@@ -55,29 +54,11 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   excitation.amplitude = options.amplitude.value_or(0.0);
   if (options.lambda) {
     RequirePositive("--lambda [-]", *options.lambda);
-    const double gross_slip = GrossSlipDisplacement(law);
-    if (!std::isfinite(gross_slip)) {
-      Refuse(
-          "--lambda needs a finite gross-slip displacement, which does not exist for alpha = {} >= "
-          "1: give --amplitude",
-          law.shape_exponent);
-    }
-    excitation.amplitude = *options.lambda * gross_slip;
+    excitation.amplitude = *options.lambda * GrossSlipDisplacement(law);
   }
   motion = models::MakeExcitation(excitation);
   if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();
   return motion;
-}
-
-Approximation ResolveMethod(const SimulateOptions& options) {
-  const methods::Method& method = *methods::FindMethod(options.method);
-  const bool is_simplified = models::FindSimplifiedLaw(options.model) != nullptr;
-  if (is_simplified && method.name != "exact") {
-    Refuse("--method {} cannot compute --model {}, a simplification", method.name, options.model);
-  }
-  Approximation approximation{options.model, options.method, {}};
-  approximation.resolution.steps = options.steps.value_or(method.default_steps);
-  return approximation;
 }
 
 void AddNoise(std::vector<double>& values, double standard_deviation,
@@ -88,10 +69,11 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  Validate(options.law.contact);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
-  const Approximation approximation = ResolveMethod(options);
+  Approximation approximation{options.model, options.method, {}};
+  approximation.resolution.steps =
+      options.steps.value_or(methods::FindMethod(options.method)->default_steps);
   const FrictionModel* model = models::FindFrictionModel(options.model);
   const models::BranchLaw law = ResolveLaw(options.law, options.model,
                                            model == nullptr ? std::nullopt : model->shape_exponent);
@@ -117,8 +99,8 @@ std::vector<std::string_view> SimulatedModels() {
 void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   const OptionGroup group(command, "Excitation");
   const auto waveforms = models::WaveformNames();
-  group.AddShown("--waveform", request.waveform, "imposed displacement")
-      ->check(OneOf({waveforms.begin(), waveforms.end()}));
+  group.AddWord("--waveform", request.waveform, {waveforms.begin(), waveforms.end()},
+                "imposed displacement");
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
   group.AddQuantity("--amplitude", request.amplitude, "amplitude [m]", "M", "m");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
@@ -127,8 +109,7 @@ void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
   group.AddShown("--growth", request.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
-  CLI::Option* const path = AddPath(group, request.path, request.displacement,
-                                    "; one output row for\neach, time counting rows");
+  CLI::Option* const path = AddPath(group, request.path, request.displacement);
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
     path->excludes(command.get_option(name));
@@ -158,23 +139,22 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
        "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
        "    --path path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddShown("--model", options->model, "friction model")->check(OneOf(SimulatedModels()));
-  AddLawOptions(command, options->law);
+  plain.AddWord("--model", options->model, SimulatedModels(), "friction model");
+  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
+  AddContactOptions(command, options->law.contact, /*has_friction=*/true);
   AddDriveOptions(command, *options);
 
   const OptionGroup noise(command, "Noise");
   noise.AddQuantity("--noise-force", options->force_noise, "standard deviation [N]", "N", "N");
   noise.AddQuantity("--noise-displacement", options->displacement_noise, "standard deviation [m]",
                     "M", "m");
-  noise.AddCount("--seed", options->seed, "seed of the noise", 0, kMostSeed);
+  noise.AddCount("--seed", options->seed, "seed of the noise", 0);
 
   const OptionGroup method(command, "Method");
-  method.AddShown("--method", options->method, MethodHelp())
-      ->check(OneOf(NamesOf(methods::Methods(), &Method::name)));
-  method
-      .Add("--steps", options->steps, "substeps a sample, elements of iwan, intervals of table",
-           "N")
-      ->check(WholeNumber(1, 1'000'000'000));
+  method.AddWord("--method", options->method, NamesOf(methods::Methods(), &Method::name),
+                 MethodHelp());
+  method.AddCount("--steps", options->steps,
+                  "substeps a sample, elements of iwan, intervals of table");
   plain.Add("-o,--output", options->output, "CSV file; default standard output", "PATH");
   OnRun(command, [options, &console] { RunSimulate(*options, console); });
 }

@@ -392,7 +392,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();
-  group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
+  group.AddJson(options->json_path);
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
   CLI::Option* const resume = group.AddFlag(

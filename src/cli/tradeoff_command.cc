@@ -164,13 +164,13 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                   "mindahl tradeoff --csv points.csv"});
   AddLawParameters(OptionGroup(command, "Parameters"), options->law);
   const OptionGroup group(command, "Excitation");
-  AddPath(group, options->path, options->column, "");
+  AddPath(group, options->path, options->column);
   AddTolerance(group, options->tolerance,
                "largest error allowed, of the peak force and of the energy: 0.01 or\n1%");
   const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
-  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
+  output.AddJson(options->json);
   OnRun(command, [options, &console] { RunTradeoff(*options, console); });
 }
 

@@ -71,8 +71,8 @@ void AddValidateCommand(CLI::App& app, Console& console) {
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddCount("--cases", options->options.cases, "contacts to draw");
-  plain.AddCount("--seed", options->options.seed, "seed of the random numbers", 0, kMostSeed);
-  plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
+  plain.AddCount("--seed", options->options.seed, "seed of the random numbers", 0);
+  plain.AddJson(options->json_path);
   OnRun(command, [options, &console] { RunValidate(*options, console); });
 }
 

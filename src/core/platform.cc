@@ -21,12 +21,6 @@ extern char** environ;
 
 namespace mindahl {
 
-void EndAtOnce(std::string_view message, int status) {
-  const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
-  static_cast<void>(written);  // nobody is left to be told
-  ::_exit(status);
-}
-
 void OccupyClosedStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;

@@ -11,9 +11,6 @@ namespace mindahl {
 // anew. Only that file includes headers of POSIX; branch_kernel.cc has what compilers differ in.
 // Functions that return an error return errno's value, 0 where there is none.
 
-/// Writes a message past all buffers, and ends the process without running anything that is
-/// registered for its end.
-[[noreturn]] void EndAtOnce(std::string_view message, int status);
 /// Opens nothing in the place of a standard stream that whoever started the program had closed: the
 /// next file would get its number, and what is printed. Writing results fails then.
 void OccupyClosedStreams();

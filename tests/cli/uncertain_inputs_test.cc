@@ -56,15 +56,9 @@ TEST(UncertainInput, ThatCannotBeReadIsRefusedWithOneLineThatSaysHowToWriteIt) {
                       "' is not a number or a quantity in m, nor one with its standard "
                       "uncertainty: write 50, 50±0.5, 50+-0.5, 50+/-0.5 or 50±1%");
   }
-  for (const auto& [text, error] : {std::pair("50±-1", "-1"),
-                                    {"50+--1%", "-0.5"},
-                                    {"50±nan", "nan"},
-                                    {"50±inf", "inf"},
-                                    {"1e308±1e3%", "inf"}}) {
+  for (const std::string text : {"50±-1", "50+--1%", "50±nan", "50±inf", "1e308±1e3%"}) {
     ExpectRefused({"fit", SampleRecord(), "--normal-load", text},
-                  fmt::format("--normal-load: the standard uncertainty in '{}' is {}: must be "
-                              "finite and >= 0; leave it out where the value is exact",
-                              text, error));
+                  "--normal-load: '" + text + "' is not a number or a quantity in N, nor one with");
   }
 }
 

@@ -55,7 +55,7 @@ TEST_F(Units, FollowAQuantityOfAnOption) {
                  "--normal-load 0.05kN")
                 .out,
             Done("convert --to lammps --sigma 48e6 --slip-force 15 --amplitude 1e-6 "
-                 "--normal-load 50 --contact-radius 0.25e-3")
+                 "--normal-load 50")
                 .out);
   EXPECT_EQ(Done("simulate --sigma 48N/um --slip-force 15N --amplitude 1um --noise-force 1mN "
                  "--noise-displacement 1nm")

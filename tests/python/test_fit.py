@@ -255,14 +255,14 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"model": "coulomb"}, "model: 'coulomb' is unknown: must be one of auto, mindlin-dahl"),
-    ({"offsets": "maybe"}, "offsets: 'maybe' is unknown: must be one of on, off"),
-    ({"fix": {"alpha": "x"}}, "fix: 'x' is not a number: write NAME=VALUE"),
+    ({"model": "coulomb"}, "model: coulomb not in {auto,mindlin-dahl,"),
+    ({"offsets": "maybe"}, "offsets: maybe not in {on,off}"),
+    ({"fix": {"alpha": "x"}}, "fix: 'alpha=x' is invalid: write NAME=VALUE"),
     ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "'rig_stiffness' is given twice"),
-    ({"cycles": 3}, "cycles: '3' is incomplete: write LO:HI"),
+    ({"cycles": 3}, "cycles: 'cycles=3' is invalid: write cycles=LO:HI"),
     ({"cycles": (1, 2, 3)}, "must be a number or a pair"),
     ({"normal_load": -5}, r"normal_load \[N\] = -5 is invalid"),
-    ({"normal_load": (50, -1)}, "the standard uncertainty in '50±-1' is -1: must be finite and >= 0"),
+    ({"normal_load": (50, -1)}, "'50±-1' is not a number or a quantity in N, nor one with its standard uncertainty"),
     ({"poisson_1": 0.7}, r"poisson_1 \[-\] = 0.7 is invalid"),
     ({"sample_rate": -1}, "sample_rate -1: must be finite and > 0 Hz"),
     ({"displacement_unit": "furlong"}, "furlong"),
@@ -307,7 +307,7 @@ def test_a_prior_is_the_program_s(tmp_path):
     assert result.to_json() == output.read_text()
     with pytest.raises(mindahl.InputError, match="prior: lag is not fitted"):
         mindahl.fit(path, prior={"lag": (1e-3, 1e-4)})
-    with pytest.raises(ValueError, match="has no standard uncertainty"):
+    with pytest.raises(ValueError, match="is invalid: write NAME=VALUE±U"):
         mindahl.fit(path, prior={"sigma": 1e7})
 
 
