@@ -94,9 +94,8 @@ struct Cell {
 };
 
 /// Reads a whole cell as a plain decimal number: sign, digits, one decimal mark, exponent; or as a
-/// time of day, "10:11:12.5", perhaps behind a date. "inf", hexadecimal and thousands separators
-/// are no numbers; a magnitude below the smallest double is 0. "1,5" is 1.5, a decimal comma with a
-/// digit on both sides, where commas do not separate the cells.
+/// time of day, "10:11:12.5", perhaps behind a date. "inf" and hexadecimal are no numbers; a
+/// magnitude below the smallest double is 0. "1,5" is 1.5 where commas do not separate the cells.
 Cell ReadCell(std::string_view text, char delimiter);
 
 /// Describes the fault of a cell that should hold a number, and the remedy.

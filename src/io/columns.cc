@@ -200,7 +200,6 @@ void TakeUnitAmongWords(Column& column) {
       std::ranges::replace(unit, '_', ' ');  // "torque_N_m"
       Column rest{.name = plain.substr(0, plain.find_last_not_of(kSeparators, at) + 1)};
       if (!IsKnown(unit) || LowerCase(unit) == "in" || rest.name.empty()) continue;
-      if (rest.name.ends_with(" in")) rest.name.resize(rest.name.size() - 3);
       FindWord(rest);
       const bool is_end = end == plain.size();
       const bool is_long = CharactersIn(unit) > 1;

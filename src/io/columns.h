@@ -45,8 +45,8 @@ struct Column {
   double least = 0.0, greatest = 0.0;  // infinite the other way without any
   double first = 0.0;
   int trend = 0;  // 1 where it only grows, as a clock or a counter does; -1 where it only falls
-  // Both rises and falls by a good part of its range: noise does not, nor does a friction force
-  // along a single stroke. Half the range is what one cycle from the middle has.
+  // Both rises and falls by a good part of its range: a noisy force along a single stroke does not.
+  // Half the range is what one cycle from the middle has.
   bool goes_to_and_fro = false;
 
   /// True if its name has a word of that role.
@@ -61,9 +61,8 @@ struct Column {
 ///   x [um]   F (kN)   F [kN] left   a unit in brackets; at the end also a word that is none known
 ///   Position, mm   x / mm           any unit behind a comma or a slash
 ///   disp_mm   pos_mm_filtered       among the words a unit of what the name is
-/// Brackets without a unit, "pos (3)" and "Load [23.8 N]", are part of the name. A factor, a range
-/// in another unit than the SI one and a word for a ratio make a unit that is none: "mm x1000", "5
-/// kN", "normalized".
+/// A factor, a range in another unit than the SI one and a word for a ratio make a unit that is
+/// none: "mm x1000", "5 kN", "normalized".
 Column ReadName(std::string_view header);
 
 /// The text in brackets, or the cell itself: "[mm]", "(mm)" and "mm" are "mm".
@@ -137,10 +136,8 @@ struct Quantity {
   [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
 };
 
-/// Reads what an option says of a role's columns: a name or a number from 1, "Fx", "3"; with a
-/// unit in brackets, "3 [kN]", or that alone, "[kN]"; a sum of columns with factors and an offset,
-/// "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that column;
-/// in a sum, a column is called by number behind '#'.
+/// Reads a text of RecordColumns. One that is a name as a whole is that column; in a sum, a column
+/// is called by number behind '#'.
 /// @throws InputError for an unknown or ambiguous one
 Quantity ReadQuantity(const std::string& text, const Columns& columns, Role role);
 

@@ -194,17 +194,6 @@ std::string DrawSeries(const Values& x, const Values& y, PlotStyle style, std::s
   return line + draw("marker", Points(x, y, "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z"));
 }
 
-/// Returns the classes of a series: in these it differs from others, in colour, and beyond the
-/// first six in dashes or filled markers.
-std::string LookOf(const PlotSeries& series, int place) {
-  constexpr int kColours = 6;       // classes s0 … s5
-  constexpr double kLastShade = 7;  // classes h0 … h7
-  if (series.shade) {
-    return fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade));
-  }
-  return fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : "");
-}
-
 /// Draws axes, grid, labels and marks.
 std::string DrawAxes(const PlotPanel& panel, const Axis& x_axis, const Axis& y_axis) {
   const double left = x_axis.from_pixel;
@@ -299,6 +288,8 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   constexpr double kLeft = 76;              // of labels of common length
   constexpr double kSymbol = 34;            // of a legend
   constexpr std::size_t kLeastPoints = 64;  // of each of many series
+  constexpr int kColours = 6;               // classes s0 … s5
+  constexpr double kLastShade = 7;          // classes h0 … h7
   if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
   Values all_x;
   Values all_y;
@@ -323,7 +314,11 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   int place = -1;  // of a series in the order of colours
   for (const PlotSeries& series : panel.series) {
     if (!series.shade && (place < 0 || !series.label.empty())) ++place;
-    const std::string look = LookOf(series, place);
+    // In these it differs from others, beyond the first six in dashes or filled markers.
+    const std::string look =
+        series.shade
+            ? fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade))
+            : fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : "");
     Values x;
     Values y;
     const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());

@@ -24,8 +24,7 @@ struct TableColumn {
   std::string missing = {}, broken = {};
 };
 
-/// A delimited text of columns. Positions in messages are `file:line:column`, with the 1-based
-/// physical line on which the row begins and the 1-based number of the cell in it.
+/// A delimited text of columns. Positions in messages are `file:line:column`, counted from 1.
 struct CsvTable {
   std::string file;
   std::vector<TableColumn> columns = {};
@@ -70,8 +69,7 @@ struct Layout {
 /// @throws InputError when no row of numbers is found, or the row above the data is no header
 Layout FindLayout(std::string_view text, const std::string& file);
 
-/// Fills a table from the rows of a text that comes in pieces. A row that is at fault as a whole is
-/// at fault in all its cells.
+/// Fills a table from the rows of a text that comes in pieces.
 class TableReader {
  public:
   /// @param wanted  columns to read, from 0: those of numbers where none is given; the others stay
