@@ -12,7 +12,6 @@
 #include "io/columns.h"
 #include "io/source.h"
 #include "io/table.h"
-#include "mindahl/loop/segments.h"
 
 namespace mindahl::io {
 namespace {
@@ -435,20 +434,6 @@ void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
   for (const auto column : loop::kRecordColumns) keep(input.record.*column);
   for (loop::Covariate& covariate : input.record.covariates) keep(covariate.values);
   keep(input.lines);
-}
-
-std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input) {
-  const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
-  if (pieces.empty()) return {input};
-  std::vector<RecordFile> records;
-  for (const loop::ConstantLoad& piece : pieces) {
-    RecordFile& added = records.emplace_back(input);
-    KeepSamples(added, piece.first, piece.last);
-    added.notes.clear();
-    added.name = fmt::format("{}:{}-{}", input.name, input.LineOf(piece.first),
-                             input.LineOf(piece.last - 1));
-  }
-  return records;
 }
 
 }  // namespace mindahl::io

@@ -46,23 +46,6 @@ struct GlitchRules {
   static constexpr double kMost = 0.25;
 };
 
-/// Sets the limits within which a normal load is a series of constant ones.
-struct LoadStepRules {
-  /// [of the load] Largest deviation of a constant load, which a fit hardly sees.
-  static constexpr double kConstant = 0.01;
-  /// [standard deviations of the readings' white noise] The same by noise: of 10⁵ readings the
-  /// widest is 4.4 off.
-  static constexpr double kNoise = 5.0;
-  /// [of the smaller] Least difference of loads with a step between; a smaller one may be a drift.
-  static constexpr double kStep = 0.05;
-  /// [of the step next to it] Largest range of a constant load: the top of a wave is not flat.
-  static constexpr double kFlat = 0.1;
-  /// [of the samples] Least fraction under a constant load: a wave is at its tops for less.
-  static constexpr double kShare = 0.6;
-  /// [turning points] After the second, from which a piece begins, a constant load has a cycle.
-  static constexpr std::size_t kTurns = 4;
-};
-
 /// Sets the limits by which cycles are counted and compared.
 struct CycleRules {
   /// [of the range] Farthest from an extreme that an end of a record is a turning point; [cycles]
@@ -93,29 +76,6 @@ struct SlidingRules {
   static constexpr double kUneven = 0.1;
   /// [4·T*·sliding amplitude] Least energy of a loop that reaches its slip force.
   static constexpr double kFull = 0.85;
-};
-
-/// Sets the limits by which the ends of a record are not part of its test.
-struct TestPartRules {
-  /// [of the widest of them] Strokes of one amplitude differ by less.
-  static constexpr double kAlike = 0.9;
-  /// [strokes] Fewer are not repeated: a record of one and a half cycles has three.
-  static constexpr std::size_t kFewest = 4;
-  /// [of the time from the first to the last of them] Least part that the strokes fill: the widest
-  /// swings of a random motion are far apart.
-  static constexpr double kFilled = 0.8;
-  /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
-  /// growing amplitude and a nested loop are inside.
-  static constexpr double kTravel = 0.25;
-  /// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
-  static constexpr double kSmallPart = 0.125;
-  /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.
-  static constexpr std::size_t kClasses = 64;
-  /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
-  static constexpr double kRest = 0.01;
-  /// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a
-  /// sine is within `rest` of its extreme for 0.05 of a stroke to either side.
-  static constexpr double kLongestDwell = 0.5;
 };
 
 }  // namespace mindahl::loop

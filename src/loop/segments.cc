@@ -1,325 +1,177 @@
 #include "mindahl/loop/segments.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
-#include <optional>
 #include <ranges>
 #include <span>
 
-#include "loop/rules.h"
+#include "core/extremes.h"
 #include "loop/statistics.h"
-#include "loop/strokes.h"
 #include "mindahl/loop/reversals.h"
 
 namespace mindahl::loop {
-
 namespace {
 
-/// Medians of five, so that single readings end nothing.
-std::vector<double> WithoutSpikes(std::span<const double> load) {
-  constexpr std::size_t kReach = 2;
-  std::vector<double> medians(load.begin(), load.end());
-  for (std::size_t i = kReach; i + kReach < load.size(); ++i) {
-    std::array<double, 2 * kReach + 1> about{};
-    std::ranges::copy(load.subspan(i - kReach, about.size()), about.begin());
-    std::ranges::nth_element(about, about.begin() + kReach);
-    medians[i] = about[kReach];
-  }
-  return medians;
-}
+// When the ends of a record are not part of its test.
 
-/// Successive samples [first, last) under one load.
-struct LoadRun {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  double load = 0.0;    // [N]
-  double spread = 0.0;  // [N], beyond the noise
-};
+/// [of the load] Largest deviation of a constant load, which a fit hardly sees.
+constexpr double kConstant = 0.01;
+/// [standard deviations of the readings' white noise] The same by noise: of 10⁵ readings the
+/// widest is 4.4 off.
+constexpr double kLoadNoise = 5.0;
+/// [of the samples] Least fraction under a constant load: a wave is at its tops for less.
+constexpr double kMostOfIt = 0.6;
+/// [of the widest of them] Strokes of one range differ by less.
+constexpr double kAlike = 0.9;
+/// [strokes] Fewer are not repeated: a record of one and a half cycles has three.
+constexpr std::size_t kFewest = 4;
+/// [of a usual stroke] Farther outside of all other strokes an end is travel: a first loading, a
+/// growing amplitude and a nested loop are inside.
+constexpr double kTravel = 0.25;
+/// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
+constexpr double kSmallPart = 0.125;
+/// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
+constexpr double kRest = 0.01;
+/// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a
+/// sine is within `rest` of its extreme for 0.05 of a stroke to either side.
+constexpr double kLongestDwell = 0.5;
 
-/// A load without its spikes, and the noise [N] of its readings.
-struct SmoothLoad {
-  std::vector<double> values;
-  double noise = 0.0;
-
-  [[nodiscard]] double Tolerance(double load) const {
-    return std::max(LoadStepRules::kConstant * load, LoadStepRules::kNoise * noise);
-  }
-};
-
-/// Returns the samples from one on as far as the load stays within the tolerance, without the ends
-/// of the adjacent ramps; `next` becomes the sample after them all.
-LoadRun RunFrom(const SmoothLoad& of, std::size_t& next) {
-  const std::span<const double> load = of.values;
-  LoadRun run{.first = next, .last = next};
-  double low = load[next];
-  double high = low;
-  for (; run.last < load.size(); ++run.last) {
-    const double lower = std::min(low, load[run.last]);
-    const double upper = std::max(high, load[run.last]);
-    if (upper - lower > 2 * of.Tolerance((upper + lower) / 2)) break;
-    low = lower;
-    high = upper;
-  }
-  next = run.last;
-  const std::span<const double> all = load.subspan(run.first, run.last - run.first);
-  run.load = UpperMedian(std::vector<double>(all.begin(), all.end()));
-  const double settled = of.Tolerance(run.load) / 2;
-  const auto is_settled = [&](std::size_t i) { return std::abs(load[i] - run.load) <= settled; };
-  while (run.first > 0 && run.first + 1 < run.last && !is_settled(run.first)) ++run.first;
-  while (run.last < load.size() && run.first + 1 < run.last && !is_settled(run.last - 1)) {
-    --run.last;
-  }
-  const auto [least, greatest] = std::ranges::minmax(load.subspan(run.first, run.last - run.first));
-  run.spread = std::max(greatest - least - 2 * LoadStepRules::kNoise * of.noise, 0.0);
-  return run;
-}
-
-bool AreSteps(std::span<const LoadRun> runs, const SmoothLoad& load) {
-  if (runs.size() < 2) return false;
-  std::size_t samples = runs.front().last - runs.front().first;
-  for (std::size_t r = 1; r < runs.size(); ++r) {
-    samples += runs[r].last - runs[r].first;
-    const double step = std::abs(runs[r].load - runs[r - 1].load);
-    const double smaller = std::min(runs[r].load, runs[r - 1].load);
-    if (!(step > std::max(LoadStepRules::kStep * smaller, 4 * load.Tolerance(smaller)))) {
-      return false;
-    }
-    if (std::max(runs[r].spread, runs[r - 1].spread) > LoadStepRules::kFlat * step) return false;
-  }
-  return static_cast<double>(samples) >=
-         LoadStepRules::kShare * static_cast<double>(load.values.size());
-}
-
-/// The loads of a record that are constant for so many turning points.
-struct ConstantLoads {
-  SmoothLoad load;
-  std::vector<std::size_t> reversals;
-  std::vector<LoadRun> runs;
-
-  [[nodiscard]] ConstantLoad PieceOf(const LoadRun& run) const {
-    const auto turn = std::ranges::lower_bound(reversals, run.first);
-    const std::size_t first = run.first == 0 ? 0 : *std::next(turn);
-    return {.first = first, .last = run.last, .normal_load = run.load};
-  }
-};
-
-ConstantLoads FindConstantLoads(const RecordView& record) {
-  ConstantLoads loads;
-  if (record.normal_load.empty()) return loads;
-  loads.load = {WithoutSpikes(record.normal_load), NoiseByDifferences(record.normal_load, 1)};
-  loads.reversals =
-      FindReversals(record.displacement, ChooseReversalGate(record.displacement).gate);
-  const auto next_turn = [&](std::size_t sample) {
-    return std::ranges::lower_bound(loads.reversals, sample);
-  };
-  for (std::size_t i = 0; i < record.size();) {
-    const LoadRun run = RunFrom(loads.load, i);
-    const auto turns = static_cast<std::size_t>(next_turn(run.last) - next_turn(run.first));
-    if (run.load > 0 && turns >= LoadStepRules::kTurns) loads.runs.push_back(run);
-  }
-  return loads;
-}
-
-}  // namespace
-
-std::vector<ConstantLoad> FindLoadSteps(const RecordView& record) {
-  const ConstantLoads loads = FindConstantLoads(record);
-  std::vector<ConstantLoad> pieces;
-  if (!AreSteps(loads.runs, loads.load)) return pieces;
-  for (const LoadRun& run : loads.runs) pieces.push_back(loads.PieceOf(run));
-  return pieces;
-}
-
-std::optional<ConstantLoad> FindSettledLoad(const RecordView& record) {
-  const ConstantLoads loads = FindConstantLoads(record);
-  const auto longest = std::ranges::max_element(
-      loads.runs, {}, [](const LoadRun& run) { return run.last - run.first; });
-  if (longest == loads.runs.end()) return std::nullopt;
-  const ConstantLoad piece = loads.PieceOf(*longest);
-  const bool is_whole = piece.first == 0 && piece.last == record.size();
-  const bool is_short = static_cast<double>(piece.last - piece.first) <
-                        LoadStepRules::kShare * static_cast<double>(record.size());
-  return is_whole || is_short ? std::nullopt : std::optional(piece);
-}
-
-namespace {
-
-constexpr std::string_view kLoadRamp = "load ramp";
-constexpr std::string_view kTravel = "travel";
-constexpr std::string_view kRest = "rest";
-
-/// The strokes of a test, which are of one range, and the positions that they reach.
+/// The widest strokes of which four in succession are of one range, to a tenth.
 struct RepeatedStrokes {
-  std::size_t first = 0;  // samples of the first and of the last turning point
+  double range = 0.0;     // [m] of the widest; 0 where no stroke is repeated
+  std::size_t first = 0;  // number of the first and of the last of their points
   std::size_t last = 0;
-  double range = 0.0;   // [m] of the widest
-  double lowest = 0.0;  // [m]
-  double highest = 0.0;
 };
 
-/// Describes excursions of nearly one range; nothing where they are too few, jump, or leave most of
-/// their time to something else.
-std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
-                                         std::span<const Excursion> excursions) {
-  RepeatedStrokes strokes{.first = displacement.size(),
-                          .range = excursions.back().range,
-                          .lowest = displacement[excursions.back().first],
-                          .highest = displacement[excursions.back().first]};
-  std::size_t count = 0;
-  double lasting = 0.0;  // [samples]
-  for (const Excursion& excursion : excursions) {
-    if (IsOneStep(displacement, excursion)) continue;
-    count += excursion.reversals;
-    lasting += static_cast<double>(excursion.duration() * excursion.reversals);
-    strokes.first = std::min(strokes.first, excursion.first);
-    strokes.last = std::max(strokes.last, excursion.last);
-    const auto [low, high] =
-        std::minmax(displacement[excursion.first], displacement[excursion.last]);
-    strokes.lowest = std::min(strokes.lowest, low);
-    strokes.highest = std::max(strokes.highest, high);
-  }
-  if (count < TestPartRules::kFewest) return std::nullopt;
-  const auto span = static_cast<double>(strokes.last - strokes.first);
-  if (lasting < TestPartRules::kFilled * span) return std::nullopt;
-  return strokes;
+/// A record and the part of it that is left.
+struct Part {
+  RecordView record;
+  double gate = 0.0;                // [m]
+  std::vector<std::size_t> points;  // samples of its ends and of its reversals
+  std::string_view before{};        // why what is before it is left out
+  std::string_view after{};
+};
+
+/// Leaves out all before a sample and after another.
+void Keep(Part& part, std::string_view reason, std::size_t first, std::size_t last) {
+  if (first > part.points.front() && part.before.empty()) part.before = reason;
+  if (last < part.points.back() && part.after.empty()) part.after = reason;
+  std::erase_if(part.points, [&](std::size_t point) { return point <= first || point >= last; });
+  part.points.insert(part.points.begin(), first);
+  part.points.push_back(last);
 }
 
-/// Finds the widest strokes that others repeat.
-std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement) {
-  const std::vector<Excursion> excursions = FindExcursions(displacement);
-  std::size_t last = excursions.size();
-  for (std::size_t tried = 0; last > 0 && tried < TestPartRules::kClasses; ++tried) {
-    const double widest = excursions[last - 1].range;
-    if (!(widest > 0)) return std::nullopt;
-    const auto first =
-        std::ranges::lower_bound(excursions, TestPartRules::kAlike * widest, {}, &Excursion::range);
-    const auto begin = static_cast<std::size_t>(first - excursions.begin());
-    const std::span<const Excursion> alike = std::span(excursions).subspan(begin, last - begin);
-    if (auto strokes = StrokesOf(displacement, alike)) return strokes;
-    --last;
-  }
-  return std::nullopt;
+void LeaveOutLoadRamps(Part& part) {
+  const std::span<const double> loads = part.record.normal_load;
+  if (loads.empty()) return;
+  const double load = Median(std::vector<double>(loads.begin(), loads.end()));
+  const double tolerance =
+      std::max(kConstant * std::abs(load), kLoadNoise * NoiseByDifferences(loads, 1));
+  const auto is_constant = [&](double value) { return std::abs(value - load) <= tolerance; };
+  const auto constant = static_cast<double>(std::ranges::count_if(loads, is_constant));
+  if (constant < kMostOfIt * static_cast<double>(loads.size())) return;
+  std::size_t first = 0;
+  while (!is_constant(loads[first])) ++first;
+  std::size_t last = loads.size() - 1;
+  while (!is_constant(loads[last])) --last;
+  const auto turn = std::ranges::lower_bound(part.points, first);
+  const auto end = std::ranges::upper_bound(part.points, last);
+  if (end - turn < static_cast<std::ptrdiff_t>(kFewest)) return;
+  Keep(part, "load ramp", first == 0 ? 0 : turn[1], last);
 }
 
-/// Follows the turning points from an end of the test's strokes outwards, as long as none leaves
-/// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
-/// left is travel unless it has as many strokes, as wide or wider, as make a test, and more than a
-/// small part of all: a random motion is a test, the swings of a broken specimen are none.
-/// @returns the last sample of the test where there is travel outside of it
-/// @param points  samples of the turning points, outwards, and of the end
-/// @param travel  [m] by which travel leaves the positions
-/// @param count   number of the strokes of the record
-template <typename Points>
-std::optional<std::size_t> Outside(std::span<const double> displacement, const Points& points,
-                                   const RepeatedStrokes& strokes, double travel,
-                                   std::size_t count) {
-  double lowest = strokes.lowest;
-  double highest = strokes.highest;
-  auto point = points.begin();
-  std::size_t last = *point;
-  for (; point != points.end(); ++point) {
-    const double at = displacement[*point];
-    if (at < lowest - travel || at > highest + travel) break;
-    // A rest within the stroke is no turn of the test.
-    if (at < lowest + travel || at > highest - travel) last = *point;
-    lowest = std::min(lowest, at);
-    highest = std::max(highest, at);
+RepeatedStrokes FindRepeated(std::span<const double> positions) {
+  RepeatedStrokes repeated;
+  std::vector<double> ranges;
+  for (std::size_t k = 1; k < positions.size(); ++k) {
+    ranges.push_back(std::abs(positions[k] - positions[k - 1]));
+    if (ranges.size() < kFewest) continue;
+    const auto [least, greatest] = ExtremesOf(std::span(ranges).last(kFewest));
+    if (least < kAlike * std::max(greatest, repeated.range)) continue;
+    if (kAlike * least > repeated.range) repeated.first = k - kFewest;
+    repeated.range = std::max(repeated.range, greatest);
+    repeated.last = k;
   }
-  if (point == points.end()) return std::nullopt;
-  std::size_t as_wide = 0;
-  for (auto next = std::next(point); next != points.end(); ++point, ++next) {
-    if (std::abs(displacement[*next] - displacement[*point]) > strokes.range / 2) ++as_wide;
+  return repeated;
+}
+
+/// Returns the number of strokes at an end that are travel.
+/// @param positions  [m] of the points, from that end to the last of the repeated strokes
+/// @param range      [m] of such a stroke
+std::size_t CountTravels(std::span<const double> positions, double range) {
+  const double outside = kTravel * range;
+  const double small_part = kSmallPart * static_cast<double>(positions.size());
+  const std::size_t most = std::max(kFewest - 1, static_cast<std::size_t>(small_part));
+  for (std::size_t count = 0; count <= most && count + 2 < positions.size(); ++count) {
+    const double at = positions[count];
+    const double next = positions[count + 1];
+    const Extremes others = ExtremesOf(positions.subspan(count + 1));
+    const bool is_outside = at < others.least - outside || at > others.greatest + outside;
+    // From a rest on the way of a travel the next stroke is only a part of one.
+    const bool is_part = std::abs(next - at) < kAlike * std::abs(positions[count + 2] - next);
+    if (!is_outside && (count == 0 || !is_part)) return count;
   }
-  const auto small_part =
-      static_cast<std::size_t>(TestPartRules::kSmallPart * static_cast<double>(count));
-  const bool is_test = as_wide >= std::max(TestPartRules::kFewest, small_part);
-  return is_test ? std::nullopt : std::optional(last);
+  return 0;
+}
+
+void LeaveOutTravels(Part& part) {
+  std::vector<double> positions;
+  for (const std::size_t point : part.points) positions.push_back(part.record.displacement[point]);
+  const RepeatedStrokes repeated = FindRepeated(positions);
+  if (!(repeated.range > 0)) return;
+  const std::size_t before =
+      CountTravels(std::span(positions).first(repeated.last + 1), repeated.range);
+  std::ranges::reverse(positions);
+  const std::size_t after =
+      CountTravels(std::span(positions).first(positions.size() - repeated.first), repeated.range);
+  if (before + after + 1 >= part.points.size()) return;
+  Keep(part, "travel", part.points[before], part.points[part.points.size() - 1 - after]);
 }
 
 /// Returns the number of samples, at least one, at which the displacement rests from its start.
 template <typename Displacements>
-std::size_t Resting(const Displacements& displacements, double reach) {
+std::size_t Resting(Displacements displacements, double reach) {
   const double at_rest = *displacements.begin();
   const auto moves = std::ranges::find_if(
       displacements, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
   return static_cast<std::size_t>(moves - displacements.begin());
 }
 
-/// Returns the number of samples of a usual stroke; 0 where there is none.
-double UsualStroke(std::span<const double> displacement, double gate) {
-  const std::vector<std::size_t> reversals = FindReversals(displacement, gate);
-  const std::vector<std::size_t> points = TurningPoints(displacement, reversals);
+void LeaveOutRests(Part& part) {
+  const std::size_t from = part.points.front();
+  const std::span<const double> moved =
+      part.record.displacement.subspan(from, part.points.back() - from + 1);
+  const Extremes all = ExtremesOf(moved);
+  const double reach = std::max(kRest * (all.greatest / 2 - all.least / 2), part.gate);
   std::vector<double> lengths;
-  for (std::size_t k = 1; k < points.size(); ++k) {
-    lengths.push_back(static_cast<double>(points[k] - points[k - 1]));
+  for (std::size_t k = 2; k + 1 < part.points.size(); ++k) {
+    lengths.push_back(static_cast<double>(part.points[k] - part.points[k - 1]));
   }
-  return lengths.empty() ? 0.0 : UpperMedian(lengths);
-}
-
-void CutBefore(std::string_view reason, std::size_t first, TestPart& test) {
-  if (first <= test.first) return;
-  test.left_out.push_back({.reason = reason, .first = test.first, .last = first});
-  test.begins_cycled = test.begins_cycled || reason != kRest;
-  test.first = first;
-}
-
-void CutAfter(std::string_view reason, std::size_t last, TestPart& test) {
-  if (last >= test.last) return;
-  test.left_out.push_back({.reason = reason, .first = last, .last = test.last});
-  test.last = last;
-}
-
-void LeaveOutTravel(std::span<const double> all, TestPart& test) {
-  const std::size_t from = test.first;
-  const std::span<const double> displacement = all.subspan(from, test.last - from);
-  const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement);
-  if (!strokes) return;
-  const double travel = TestPartRules::kTravel * strokes->range;
-  std::vector<std::size_t> points = FindReversals(displacement, travel);
-  points.insert(points.begin(), 0);
-  points.push_back(displacement.size() - 1);
-  const auto turn = [&](std::size_t sample) { return std::ranges::lower_bound(points, sample); };
-  const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
-  const auto before = Outside(displacement, std::ranges::subrange(begin, points.rend()), *strokes,
-                              travel, points.size());
-  if (before) CutBefore(kTravel, from + *before, test);
-  const auto after = Outside(displacement, std::ranges::subrange(turn(strokes->last), points.end()),
-                             *strokes, travel, points.size());
-  if (after) CutAfter(kTravel, from + *after + 1, test);
-}
-
-void LeaveOutRests(std::span<const double> displacement, TestPart& test) {
-  const std::size_t from = test.first;
-  const std::span<const double> moved = displacement.subspan(from, test.last - from);
-  const double gate = ChooseReversalGate(moved).gate;
-  const double usual = UsualStroke(moved, gate);
-  if (!(usual > 0)) return;
-  const auto [least, greatest] = std::ranges::minmax(moved);
-  const double reach = std::max(TestPartRules::kRest * (greatest / 2 - least / 2), gate);
-  const auto is_rest = [&](std::size_t samples) {
-    return samples > 1 && static_cast<double>(samples) > TestPartRules::kLongestDwell * usual;
-  };
+  if (lengths.empty()) return;
+  const double longest = kLongestDwell * Median(lengths);
   // One sample stays, from which the motion begins and at which it ends.
-  const std::size_t before = Resting(moved, reach);
-  if (is_rest(before)) CutBefore(kRest, from + before - 1, test);
-  const std::size_t after = Resting(std::views::reverse(moved), reach);
-  if (is_rest(after)) CutAfter(kRest, from + moved.size() - after + 1, test);
+  const auto rest = [&](std::size_t samples) {
+    return samples > 1 && static_cast<double>(samples) > longest ? samples - 1 : 0;
+  };
+  Keep(part, "rest", from + rest(Resting(moved, reach)),
+       part.points.back() - rest(Resting(std::views::reverse(moved), reach)));
 }
 
 }  // namespace
 
 TestPart FindTestPart(const RecordView& record) {
-  TestPart test{.last = record.size()};
-  if (record.size() == 0) return test;
-  if (const std::optional<ConstantLoad> settled = FindSettledLoad(record)) {
-    CutBefore(kLoadRamp, settled->first, test);
-    CutAfter(kLoadRamp, settled->last, test);
-  }
-  LeaveOutTravel(record.displacement, test);
-  LeaveOutRests(record.displacement, test);
-  std::ranges::sort(test.left_out, {}, &LeftOut::first);
+  if (record.size() == 0) return {};
+  const double gate = ChooseReversalGate(record.displacement).gate;
+  Part part{record, gate, FindReversals(record.displacement, gate)};
+  part.points.insert(part.points.begin(), 0);
+  part.points.push_back(record.size() - 1);
+  LeaveOutLoadRamps(part);
+  LeaveOutTravels(part);
+  LeaveOutRests(part);
+  TestPart test{.first = part.points.front(), .last = part.points.back() + 1};
+  if (!part.before.empty()) test.left_out.push_back({part.before, 0, test.first});
+  if (!part.after.empty()) test.left_out.push_back({part.after, test.last, record.size()});
+  test.begins_cycled = !part.before.empty() && part.before != "rest";
   return test;
 }
 

@@ -74,26 +74,6 @@ void RequireLoops(const std::vector<RecordFile>& inputs) {
   }
 }
 
-/// Returns one record for each constant load of a file, unless it is said what the loads are, or
-/// which samples of it count.
-/// @param left_out  gets the samples between the loads
-std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
-                                   std::vector<report::LeftOut>& left_out) {
-  const loop::PreparationOptions& chosen = request.fit.preparation;
-  if (!request.contact.normal_loads.empty() || chosen.load_window || chosen.samples) return inputs;
-  std::vector<RecordFile> records;
-  for (const RecordFile& input : inputs) {
-    std::size_t between = input.record.size();
-    for (RecordFile& piece : io::SplitAtLoadSteps(input)) {
-      between -= piece.record.size();
-      records.push_back(std::move(piece));
-    }
-    if (between == 0) continue;
-    left_out.push_back({.file = records.back().name, .samples = between, .why = "another load"});
-  }
-  return records;
-}
-
 /// Cuts each record to its test, where that is asked for and nothing says which samples count.
 /// @param options  changed: a contact that was cycled before is steady
 /// @param left_out  gets the samples that are cut off
@@ -418,7 +398,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   }
   std::vector<report::LeftOut> left_out;
-  inputs = SplitLoads(request, std::move(inputs), left_out);
   KeepTests(request, inputs, options, left_out);
   std::vector<Record> records;
   records.reserve(inputs.size());

@@ -181,9 +181,6 @@ TEST_F(NoiseInDisplacement, GivesResidualsInMetres) {
 constexpr double kFriction = 0.4;
 constexpr double kAmplitude = 6e-7;  // slips grossly at 20 N, partly at 50 and 100 N
 constexpr std::size_t kCycle = 100;  // samples
-/// Pieces that start from an extreme have one offset with their origin, which costs a digit more.
-constexpr double kOfPieces = 1e-5;
-
 double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
 
 class LoadStepsOfFit : public CommandTest {
@@ -205,27 +202,12 @@ class LoadStepsOfFit : public CommandTest {
   }
 };
 
-TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {
-  const std::string file = Series();
-  const json fit = JsonOf("fit " + file);
-  EXPECT_NEAR(Value(fit, "load_exponent"), 1.0 / 3, kOfPieces);
-  EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, kOfPieces);
-  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kFriction, kOfPieces);
-  // Line 1 is the header; a piece begins with the second turn of the sine after the step.
-  ASSERT_EQ(fit["input"]["files"].size(), 3U);
-  EXPECT_EQ(fit["input"]["files"][1], file + ":577-1001");
-  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 2 * (3 * kCycle / 4));
-  EXPECT_EQ(fit["input"]["left_out"][0]["why"], "another load");
-  EXPECT_THAT(Done("fit " + file).out, HasSubstr("150 samples (another load)"));
-}
-
-TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadOrWindow) {
-  const std::string fit = "fit " + Series();
-  for (const char* more : {" --normal-load 56.6", " --samples 1:1200", " --load-window 15:105"}) {
-    const json followed = JsonOf(fit + more);
-    EXPECT_EQ(followed["input"]["files"].size(), 1U);
-    EXPECT_FALSE(followed["parameters"].contains("load_exponent"));
-  }
+TEST_F(LoadStepsOfFit, AreFollowedInOneRecord) {
+  const json fit = JsonOf("fit " + Series());
+  EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, kNoiseFree);
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kFriction, kNoiseFree);
+  EXPECT_EQ(fit["input"]["files"].size(), 1U);
+  EXPECT_FALSE(fit["parameters"].contains("load_exponent"));
 }
 
 }  // namespace

@@ -22,34 +22,6 @@ RecordFile TwoLoads() {
   return file;
 }
 
-TEST(LoadPieces, HaveEveryColumnTheirLinesAndANameOfTheirOwn) {
-  const std::vector<RecordFile> pieces = SplitAtLoadSteps(TwoLoads());
-  ASSERT_EQ(pieces.size(), 2U);
-  EXPECT_EQ(pieces[0].name, "series.csv:2-161");
-  EXPECT_EQ(pieces[1].name, "series.csv:192-321");  // the sine turns at samples 170 and 190
-  const RecordFile& second = pieces[1];
-  EXPECT_THAT(second.notes, IsEmpty());
-  ASSERT_EQ(second.record.size(), 130U);
-  EXPECT_EQ(second.lines.front(), 192U);
-  EXPECT_EQ(second.lines.back(), 321U);
-  EXPECT_EQ(second.record.force.front(), 190.0);
-  EXPECT_EQ(second.record.time.front(), 19.0);
-  EXPECT_EQ(second.record.normal_load.back(), 50.0);
-  EXPECT_EQ(second.record.covariates[0].values.front(), -190.0);
-  EXPECT_EQ(second.record.covariates[0].unit, "bar");
-  EXPECT_EQ(second.record.normal_load.front(), 50.0);
-}
-
-TEST(LoadPieces, OfOneLoadAreTheRecordItself) {
-  RecordFile file = TwoLoads();
-  std::ranges::fill(file.record.normal_load, 20.0);
-  const std::vector<RecordFile> pieces = SplitAtLoadSteps(file);
-  ASSERT_EQ(pieces.size(), 1U);
-  EXPECT_EQ(pieces[0].name, "series.csv");
-  EXPECT_EQ(pieces[0].notes.size(), 1U);
-  EXPECT_EQ(pieces[0].record.size(), 320U);
-}
-
 TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   RecordFile file = TwoLoads();
   file.record.time.assign(file.lines.begin(), file.lines.end());

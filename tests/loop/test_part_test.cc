@@ -116,6 +116,15 @@ TEST(TestPart, LeavesOutATravelBeforeOrAfterOfAnyLengthAndDirection) {
   }
 }
 
+TEST(TestPart, KeepsAllAmplitudesAfterATravel) {
+  const std::vector<double> blocks =
+      Sine(12, [](double cycle) { return 0.25 * (1 + std::floor(cycle / 3)); });
+  const TestPart part = FindTestPart(WithForce(Joined({Way(-8 * kReach, 0.0, 300), blocks})));
+  EXPECT_GE(part.first, 300U);
+  EXPECT_LE(part.first, 300U + kLost);
+  EXPECT_EQ(part.last, 300U + blocks.size());
+}
+
 TEST(TestPart, LeavesOutTheFallOfASpecimenThatBreaks) {
   std::vector<double> cycles =
       Sine(30, [](double cycle) { return cycle < 27 ? 1.0 : 1 + (cycle - 27) * (cycle - 27); });

@@ -152,8 +152,4 @@ void KeepTimeWindow(RecordFile& input, double first, double last);
 /// Keeps the samples [first, last) of a record.
 void KeepSamples(RecordFile& input, std::size_t first, std::size_t last);
 
-/// Returns a record whose normal load goes in steps (loop/segments.h) as one record for each
-/// load; else the record itself.
-std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input);
-
 }  // namespace mindahl::io
