@@ -134,7 +134,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   if (result->converged) {
     fit.slips_grossly = report::SlipsGrossly(
         *result->model, result->law,
-        identification::ContactAmplitude(*result, result->law, fitted.measures.amplitude));
+        identification::ContactAmplitude(*result, result->law, fitted.facts.amplitude));
   }
   return fit;
 }

@@ -97,7 +97,8 @@ io::Samples ReadHead(io::RecordStream& stream) {
     for (const auto column : loop::kRecordColumns) AppendColumn(piece.*column, head.*column);
     AppendColumn(piece.lines, head.lines);
     if (head.size() < next_look) continue;
-    if (loop::ChooseReversalGate(head.displacement).count >= kReversals) break;
+    const double gate = loop::ChooseReversalGate(head.displacement).gate;
+    if (loop::FindReversals(head.displacement, gate).size() >= kReversals) break;
     next_look = 2 * head.size();
   }
   return head;

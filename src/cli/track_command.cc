@@ -233,10 +233,9 @@ class TrackRun {
     test_.log = tracker_->log();
     if (test_.cycles == 0) {
       Refuse(
-          "{}: no whole cycle to fit: the displacement turns {} times by more than {:.3g} m: "
-          "choose "
-          "another column with --displacement, or a smaller --reversal-gate",
-          fmt::join(test_.files, ", "), test_.gate.count, test_.gate.gate);
+          "{}: no whole cycle to fit of turns by more than {:.3g} m: choose another column with "
+          "--displacement, or a smaller --reversal-gate",
+          fmt::join(test_.files, ", "), test_.gate.gate);
     }
     campaign::Describe(test_.evolutions);
     return std::move(test_);
@@ -267,8 +266,9 @@ class TrackRun {
     Resume(options);
     if (!test_.gate.certain) {
       test_.notes.push_back(
-          fmt::format("{}: the number of reversals is not certain, {} or {}: set --reversal-gate",
-                      source, test_.gate.count, test_.gate.other_count));
+          fmt::format("{}: the number of reversals under a gate of {:.3g} m is not certain: set "
+                      "--reversal-gate",
+                      source, test_.gate.gate));
     }
     tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
   }

@@ -57,7 +57,7 @@ bool FitResult::has_mixed_states() const {
 
 const RecordFit& FitResult::WidestRecord() const {
   return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
-    return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
+    return fit.facts.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
   });
 }
 
@@ -74,9 +74,9 @@ double FitResult::PeakForce() const {
   const RecordFit& widest = WidestRecord();
   // The force of a joint follows its load: under the mean one it is that of the law's steady loop.
   if (widest.load_varies && model->memory == models::Memory::kNone) {
-    return models::SteadyPeakForce(*model, law, widest.measures.amplitude);
+    return models::SteadyPeakForce(*model, law, widest.facts.amplitude);
   }
-  return widest.measures.peak_force / widest.load_ratio;
+  return widest.facts.peak_force / widest.load_ratio;
 }
 
 bool FitResult::is_scaled_by_load() const {
@@ -92,7 +92,7 @@ std::optional<double> FitResult::MeasuredHalfGap() const {
 
 double FitResult::MisfitScale() const {
   const RecordFit& widest = WidestRecord();
-  if (response == loop::Channel::kDisplacement) return widest.measures.amplitude;
+  if (response == loop::Channel::kDisplacement) return widest.facts.amplitude;
   const std::optional<double> half_gap = MeasuredHalfGap();
   const bool slips = loop::Slides(widest.facts) || loop::ReachesSlip(widest.facts);
   return half_gap && slips ? *half_gap : PeakForce();

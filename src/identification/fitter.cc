@@ -98,9 +98,6 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
     RecordFit& fit = result.records[r];
     static_cast<loop::RecordReading&>(fit) = prepared;
-    fit.facts = attempt.depth < Depth::kErrors
-                    ? loop::LoopFacts()
-                    : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
     fit.initial_state = solved.best.problem.states[r];
     fit.response_noise =
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();

@@ -145,7 +145,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                                      const FitResult& fit) {
   if (!AreComparable(options, data, fit)) return std::nullopt;
   const bool is_masing = fit.model->memory == Memory::kReturnPoint;
-  const double amplitude = ContactAmplitude(fit, fit.law, fit.WidestRecord().measures.amplitude);
+  const double amplitude = ContactAmplitude(fit, fit.law, fit.WidestRecord().facts.amplitude);
   LawChoice choice;
   choice.alternative = models::FindFrictionModel(is_masing ? "dahl" : "mindlin-dahl");
   choice.law = is_masing ? models::DahlEquivalent(fit.law, amplitude)

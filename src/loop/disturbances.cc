@@ -3,17 +3,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/rules.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
@@ -23,12 +20,12 @@ namespace {
 
 /// Returns the least distance [m] between neighbours that differ; 0 where none do.
 double SmallestStep(std::span<const double> displacement) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (displacement.size() < 2) return 0.0;
-  const Eigen::Map<const Eigen::ArrayXd> x(displacement.data(), std::ssize(displacement));
-  const auto steps = (x.tail(x.size() - 1) - x.head(x.size() - 1)).abs();
-  const double smallest = (steps > 0).select(steps, kNone).minCoeff();
-  return smallest < kNone ? smallest : 0.0;
+  double smallest = 0.0;
+  for (std::size_t i = 1; i < displacement.size(); ++i) {
+    const double step = std::abs(displacement[i] - displacement[i - 1]);
+    if (step > 0 && !(step >= smallest && smallest > 0)) smallest = step;
+  }
+  return smallest;
 }
 
 /// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
@@ -40,27 +37,19 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   constexpr std::size_t kFewestRests = 3;
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
   constexpr double kFinest = 1e-9;
-  if (displacement.empty()) return false;
   const auto [lowest, highest] = ExtremesOf(displacement);
   if (!(step > kFinest * (highest - lowest))) return false;
-  const auto pairs = static_cast<double>(displacement.size() - 1);
-  std::size_t broken = 0;
-  std::size_t rest = 1;         // samples
-  std::set<std::size_t> rests;  // different ones
+  auto broken = kMostBroken * static_cast<double>(displacement.size() - 1);  // that are left
+  std::size_t rest = 1;                                                      // samples
+  std::set<std::size_t> rests;                                               // different ones
   bool is_even = true;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
     const double nearest = std::round(steps);
-    if (!(std::abs(steps - nearest) < kWhole)) {
-      if (static_cast<double>(++broken) > kMostBroken * pairs) return false;
-    }
+    if (!(std::abs(steps - nearest) < kWhole) && --broken < 0) return false;
     if (nearest > 1) is_even = false;
-    if (steps == 0) {
-      ++rest;
-    } else {
-      if (rests.size() < kFewestRests) rests.insert(rest);
-      rest = 1;
-    }
+    if (nearest > 0 && rests.size() < kFewestRests) rests.insert(rest);
+    rest = nearest > 0 ? 1 : rest + 1;
   }
   return is_even ? rests.size() == kFewestRests : rests.size() > 1;
 }
@@ -116,7 +105,7 @@ std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise
 
 double EncoderStep(std::span<const double> displacement) {
   const double step = SmallestStep(displacement);
-  return IsQuantised(displacement, step) ? step : 0.0;
+  return step > 0 && IsQuantised(displacement, step) ? step : 0.0;
 }
 
 double EstimateDisplacementNoise(std::span<const double> displacement) {
@@ -168,9 +157,24 @@ namespace {
 
 using Readings = std::span<const double>;
 
+// When a sample is a glitch.
+
+/// [steps about it and of the record] Least height of a spike over both neighbours. Noise of
+/// standard deviation s has steps of 2.2 s at the third of 24 and would have to stand out by 6.6.
+constexpr double kSpike = 3.0;
+/// [samples] Longer ones are as well a pulse of the drive or an inner loop.
+constexpr std::size_t kLongestSpike = 3;
+/// [samples] So many to either side of a spike are looked at: the edges of a square wave of six
+/// samples a cycle come often enough within them to be distinguished from spikes.
+constexpr std::size_t kAboutSpike = 12;
+/// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
+constexpr double kDropout = 2.0;
+/// [of the samples] Largest fraction that may be glitches; more of them are the record.
+constexpr double kMost = 0.25;
+
 /// Returns the usual step [unit of the column], which nine tenths of those that are not zero do not
 /// exceed; 0 where all are zero.
-double UsualStep(Readings values) {
+double UsualStepOf(Readings values) {
   constexpr double kUsualShare = 0.9;
   std::vector<double> steps;
   steps.reserve(values.size());
@@ -185,50 +189,37 @@ double UsualStep(Readings values) {
   return *at;
 }
 
-/// A column, what is wrong in it, and the column with lines over that.
-class InterpolatedChannel {
- public:
-  explicit InterpolatedChannel(Readings values) : values_(values) {}
+/// A column, what is wrong in it, and the column with lines over that; both empty where nothing is.
+struct Repaired {
+  Readings read;
+  std::vector<bool> glitches{};
+  std::vector<double> interpolated{};
+  std::optional<double> usual_step{};  // of the column as it was when it was first asked for
 
   [[nodiscard]] Readings values() const {
-    return interpolated_.empty() ? values_ : Readings(interpolated_);
+    return interpolated.empty() ? read : Readings(interpolated);
   }
-  [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
-  /// Returns the usual step of the column as it is when this is first called.
-  double usual_step() {
-    if (!usual_step_) usual_step_ = UsualStep(values());
-    return *usual_step_;
+  double UsualStep() {
+    if (!usual_step) usual_step = UsualStepOf(values());
+    return *usual_step;
   }
-
-  /// Draws a line between the samples about [begin, end), which are inside the record.
-  void LeaveOut(std::size_t begin, std::size_t end) {
-    if (glitches_.empty()) {
-      glitches_.assign(size(), false);
-      interpolated_.assign(values_.begin(), values_.end());
-    }
-    const double first = interpolated_[begin - 1];
-    const double last = interpolated_[end];
-    const auto steps = static_cast<double>(end - begin + 1);
-    for (std::size_t i = begin; i < end; ++i) {
-      glitches_[i] = true;
-      const double share = static_cast<double>(i - begin + 1) / steps;
-      interpolated_[i] = first + share * (last - first);
-    }
-  }
-
-  [[nodiscard]] const std::vector<bool>& glitches() const { return glitches_; }
-  [[nodiscard]] double CountGlitches() const {
-    return static_cast<double>(std::ranges::count(glitches_, true));
-  }
-  std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
-
- private:
-  Readings values_;
-  std::vector<double> interpolated_;
-  std::vector<bool> glitches_;
-  std::optional<double> usual_step_;
 };
+
+/// Draws a line between the samples about [begin, end), which are inside the record.
+void LeaveOut(std::size_t begin, std::size_t end, Repaired& channel) {
+  channel.glitches.resize(channel.read.size());
+  if (channel.interpolated.empty()) {
+    channel.interpolated.assign(channel.read.begin(), channel.read.end());
+  }
+  std::vector<double>& values = channel.interpolated;
+  const double first = values[begin - 1];
+  const double slope = (values[end] - first) / static_cast<double>(end - begin + 1);
+  for (std::size_t i = begin; i < end; ++i) {
+    channel.glitches[i] = true;
+    values[i] = first + slope * static_cast<double>(i - begin + 1);
+  }
+}
 
 /// Successive samples: [begin, end).
 struct Run {
@@ -255,7 +246,7 @@ std::vector<Run> FindDropouts(const RecordView& record) {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!is_zero(i)) others.push_back(values[i]);
     }
-    const double within = GlitchRules::kDropout * UsualStep(others);
+    const double within = kDropout * UsualStepOf(others);
     return std::ranges::any_of(runs, [&](const Run& run) {
       const auto [low, high] = std::minmax(values[run.begin - 1], values[run.end]);
       return std::max(low, -high) > within;
@@ -267,30 +258,27 @@ std::vector<Run> FindDropouts(const RecordView& record) {
 
 /// Returns the third largest step about [begin, end), that into it and that out of it aside: a
 /// second spike makes two. 0 with fewer.
-double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
+double StepAbout(const Repaired& channel, std::size_t begin, std::size_t end) {
   std::array<double, 3> largest{};
-  const auto look_at = [&](std::size_t i) {
+  const std::size_t last = std::min(end + kAboutSpike, channel.read.size() - 1);
+  for (std::size_t i = std::max(begin, kAboutSpike + 1) - kAboutSpike; i <= last; ++i) {
+    if (i >= begin && i <= end) continue;
     largest[2] = std::max(largest[2], channel.Step(i));
     std::ranges::sort(largest, std::greater<>());
-  };
-  for (std::size_t i = begin - 1; i >= 1 && begin - i <= GlitchRules::kAbout; --i) look_at(i);
-  const std::size_t size = channel.size();
-  for (std::size_t i = end + 1; i < size && i - end <= GlitchRules::kAbout; ++i) look_at(i);
+  }
   return largest[2];
 }
 
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i) {
+std::size_t SpikeAt(Repaired& channel, std::size_t i) {
   const Readings values = channel.values();
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
   double least = sense * values[i];
-  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + GlitchRules::kLongestSpike;
-       ++end) {
+  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + kLongestSpike; ++end) {
     const double height = least - std::max(before, sense * values[end]);
-    if (height > GlitchRules::kSpike * channel.Step(end + 1) &&
-        height > GlitchRules::kSpike * StepAbout(channel, i, end) &&
-        height > GlitchRules::kSpike * channel.usual_step()) {
+    if (height > kSpike * channel.Step(end + 1) && height > kSpike * StepAbout(channel, i, end) &&
+        height > kSpike * channel.UsualStep()) {
       return end - i;
     }
     least = std::min(least, sense * values[end]);
@@ -299,14 +287,14 @@ std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i) {
 }
 
 /// Makes one pass: a spike may hide another, until it is interpolated.
-bool FindSpikes(InterpolatedChannel& channel) {
+bool FindSpikes(Repaired& channel) {
   bool found = false;
-  for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
+  for (std::size_t i = 2; i + 2 < channel.read.size(); ++i) {
     // Hardly any step of a clean record exceeds the one before it by this factor.
-    if (!(channel.Step(i) > GlitchRules::kSpike * channel.Step(i - 1))) continue;
+    if (!(channel.Step(i) > kSpike * channel.Step(i - 1))) continue;
     const std::size_t samples = SpikeAt(channel, i);
     if (samples == 0) continue;
-    channel.LeaveOut(i, i + samples);
+    LeaveOut(i, i + samples, channel);
     found = true;
   }
   return found;
@@ -318,20 +306,22 @@ Interpolated FindAndInterpolate(const RecordView& record) {
   constexpr int kPasses = 3;
   const std::vector<Run> dropouts = FindDropouts(record);
   const auto interpolated = [&](Readings values) {
-    InterpolatedChannel channel(values);
-    for (const Run& run : dropouts) channel.LeaveOut(run.begin, run.end);
+    Repaired channel{.read = values};
+    for (const Run& run : dropouts) LeaveOut(run.begin, run.end, channel);
     for (int pass = 0; pass < kPasses && FindSpikes(channel); ++pass) continue;
-    const double most = GlitchRules::kMost * static_cast<double>(values.size());
-    return channel.CountGlitches() > most ? InterpolatedChannel(values) : channel;
+    const auto count = static_cast<double>(std::ranges::count(channel.glitches, true));
+    const double most = kMost * static_cast<double>(values.size());
+    return count > most ? Repaired{.read = values} : channel;
   };
-  InterpolatedChannel displacement = interpolated(record.displacement);
-  InterpolatedChannel force = interpolated(record.force);
-  std::vector<bool> glitches = displacement.glitches();
-  glitches.resize(std::max(glitches.size(), force.glitches().size()));
-  for (std::size_t i = 0; i < force.glitches().size(); ++i) {
-    if (force.glitches()[i]) glitches[i] = true;
+  Repaired displacement = interpolated(record.displacement);
+  Repaired force = interpolated(record.force);
+  Interpolated result{std::move(displacement.glitches), std::move(displacement.interpolated),
+                      std::move(force.interpolated)};
+  result.glitches.resize(std::max(result.glitches.size(), force.glitches.size()));
+  for (std::size_t i = 0; i < force.glitches.size(); ++i) {
+    if (force.glitches[i]) result.glitches[i] = true;
   }
-  return {std::move(glitches), displacement.TakeInterpolated(), force.TakeInterpolated()};
+  return result;
 }
 
 }  // namespace mindahl::loop

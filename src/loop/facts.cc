@@ -4,16 +4,92 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
 
-#include "loop/rules.h"
+#include "core/extremes.h"
 #include "loop/statistics.h"
-#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
 namespace {
 
 using Column = std::span<const double>;
+
+/// [of the range] Farthest from an extreme that an end of a record is a turning point; [cycles]
+/// the most that one which counts is short of a whole one.
+constexpr double kAtExtreme = 0.02;
+/// [of the widest cycle's amplitude] Least amplitude of a cycle that is one of the widest.
+constexpr double kSteady = 0.95;
+/// [of its width] Farthest that a cycle ends from where it began: then it loses what a closed one
+/// does, but for twice that fraction.
+constexpr double kReturns = 0.05;
+
+/// Returns the reversals, with the record's first and last sample where they lie at an extreme.
+std::vector<std::size_t> TurningPoints(Column displacement,
+                                       std::span<const std::size_t> reversals) {
+  std::vector<std::size_t> points(reversals.begin(), reversals.end());
+  if (points.empty()) return points;
+  const auto [lowest, highest] = ExtremesOf(displacement);
+  const double tolerance = kAtExtreme * (highest - lowest);
+  const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
+    const double extreme = displacement[end] > displacement[neighbour] ? highest : lowest;
+    return std::abs(extreme - displacement[end]) <= tolerance;
+  };
+  const std::size_t last = displacement.size() - 1;
+  if (points.front() != 0 && at_extreme(0, points.front())) points.insert(points.begin(), 0);
+  if (points.back() != last && at_extreme(last, points.back())) points.push_back(last);
+  return points;
+}
+
+/// Returns the least and greatest mean over a twentieth of the samples: what a stroke's force keeps
+/// to, not its noise.
+std::pair<double, double> MovingMeanRange(Column force) {
+  const std::size_t width = std::max<std::size_t>(force.size() / 20, 1);
+  double sum =
+      std::accumulate(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(width), 0.0);
+  double least = sum;
+  double greatest = sum;
+  for (std::size_t i = width; i < force.size(); ++i) {
+    sum += force[i] - force[i - width];
+    least = std::min(least, sum);
+    greatest = std::max(greatest, sum);
+  }
+  return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
+}
+
+/// Returns ∮ T dδ [J] from one turning point to the next but one, closed by a chord.
+double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
+  const Column x = record.displacement;
+  // Forces relative to the first sample: an offset must not cost digits on a small loop.
+  const auto force = [&](std::size_t i) {
+    return static_cast<long double>(record.force[i]) - record.force[first];
+  };
+  const auto way = [&](std::size_t from, std::size_t to) {
+    return static_cast<long double>(x[to]) - x[from];
+  };
+  long double energy = 0.5L * force(last) * way(last, first);
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
+  }
+  if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
+    ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
+                 "must be within the range of double, 1.8e308: use larger units");
+  }
+  return static_cast<double>(energy);
+}
+
+/// The samples from one turning point to the next.
+struct Stroke {
+  Column displacement;  // [m]
+  Column force;         // [N]
+
+  [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
+  [[nodiscard]] double travel() const {
+    return std::abs(displacement.back() - displacement.front());
+  }
+};
 
 /// Means of y over ranges of x that follow on each other, `edges` from the lowest: of a line from
 /// sample to sample ∫ y dx by trapezia, to and fro, over each range. Empty where the line does not
@@ -78,7 +154,11 @@ struct Cycle {
 
 /// @param points  its three turning points
 Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
-  Cycle cycle{StrokeOf(record, points[0], points[1]), StrokeOf(record, points[1], points[2])};
+  const auto stroke = [&](std::size_t first, std::size_t last) {
+    return Stroke{record.displacement.subspan(first, last - first + 1),
+                  record.force.subspan(first, last - first + 1)};
+  };
+  Cycle cycle{stroke(points[0], points[1]), stroke(points[1], points[2])};
   const Column up = cycle.rising().displacement;
   const Column down = cycle.falling().displacement;
   const double lower = std::max(up.front(), down.back());
@@ -112,11 +192,6 @@ void MeasureWidth(const Cycle& cycle, CycleFacts& facts) {
   }
 }
 
-double EnergyRatio(double energy, double amplitude, double peak_force) {
-  const double rectangle = 4 * amplitude * peak_force;
-  return rectangle > 0 ? energy / rectangle : 0.0;
-}
-
 double PeakForce(const Cycle& cycle) {
   const Column one = cycle.first.force;
   const Column other = cycle.second.force;
@@ -137,18 +212,16 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   facts.amplitude = (cycle.first.travel() + cycle.second.travel()) / 4;
   facts.peak_force = PeakForce(cycle);
   facts.energy = CycleEnergy(record, points[0], points[2]);
-  facts.energy_ratio = EnergyRatio(facts.energy, facts.amplitude, facts.peak_force);
-  facts.returns = std::abs(way) <= CycleRules::kReturns * 2 * facts.amplitude;
+  const double rectangle = 4 * facts.amplitude * facts.peak_force;
+  if (rectangle > 0) facts.energy_ratio = facts.energy / rectangle;
+  facts.returns = std::abs(way) <= kReturns * 2 * facts.amplitude;
   MeasureGap(cycle, facts);
   if (facts.half_gap && facts.peak_force > 0) MeasureWidth(cycle, facts);
   return facts;
 }
 
 double StandardDeviation(Column values) {
-  const double mean = Mean(values);
-  double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+  return std::sqrt(boost::math::statistics::sample_variance(values.begin(), values.end()));
 }
 
 std::optional<double> Asymmetry(std::span<const Cycle> cycles, double peak_force) {
@@ -168,56 +241,62 @@ std::optional<double> Asymmetry(std::span<const Cycle> cycles, double peak_force
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Measures forces with the displacement's sign.
-LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> reversals) {
-  LoopFacts facts;
-  std::vector<Cycle> cycles;
-  const std::vector<std::size_t> points = TurningPoints(record.displacement, reversals);
-  for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
-    const auto of_cycle = std::span(points).subspan(k, 3);
-    cycles.push_back(CycleOf(record, of_cycle));
-    facts.cycles.push_back(MeasureCycle(record, of_cycle, cycles.back()));
+/// Measures what a record shows whether it closes a cycle or not.
+void MeasureStrokes(const RecordView& record, std::span<const std::size_t> points,
+                    LoopFacts& facts) {
+  const Column x = record.displacement;
+  std::vector<double> travels;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    travels.push_back(std::abs(x[points[k]] - x[points[k - 1]]));
   }
-  facts.closed = !facts.cycles.empty();
-  if (!facts.closed) return facts;
-  const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
-  std::vector<Cycle> steady;
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::kSteady * widest;
-    if (facts.cycles[k].steady) steady.push_back(cycles[k]);
+  const auto [lowest, highest] = ExtremesOf(x);
+  if (travels.empty()) travels.push_back(highest - lowest);
+  const double widest = std::ranges::max(travels);
+  std::erase_if(travels, [&](double travel) { return travel < kSteady * widest; });
+  facts.amplitude = Mean(travels) / 2;
+  auto [least, greatest] = MovingMeanRange(record.force);
+  std::vector<std::size_t> turns(points.begin(), points.end());
+  turns.insert(turns.end(), {0, x.size() - 1});
+  for (const std::size_t turn : turns) {
+    least = std::min(least, record.force[turn]);
+    greatest = std::max(greatest, record.force[turn]);
   }
-  // Returns the values of the steady cycles that have the fact.
-  const auto values_of = [&](auto fact) {
-    std::vector<double> values;
-    for (const CycleFacts& cycle : facts.cycles) {
-      const std::optional<double> value = cycle.*fact;
-      if (cycle.steady && value) values.push_back(*value);
+  facts.peak_force = (greatest - least) / 2;
+  if (points.empty() || !(facts.amplitude > 0)) return;
+  const double ends =
+      std::abs(x[points.front()] - x.front()) + std::abs(x.back() - x[points.back()]);
+  const double swings = static_cast<double>(points.size() - 1) + ends / (2 * facts.amplitude);
+  facts.complete_cycles = static_cast<std::size_t>(swings / 2 + kAtExtreme);
+}
+
+/// Returns the standard deviation of the sum of the energies of cycles that noise of both channels
+/// makes: noise enters ∮F dx by Σ((v[i+1] − v[i−1])/2)² of the other channel.
+double NoiseOfEnergies(const RecordView& record) {
+  const auto noise_of = [](Column noisy, Column other) {
+    double sum = 0.0;
+    for (std::size_t i = 1; i + 1 < other.size(); ++i) {
+      const double step = (other[i + 1] - other[i - 1]) / 2;
+      sum += step * step;
     }
-    return values;
+    return NoiseByDifferences(noisy, 2) * std::sqrt(sum);
   };
-  facts.steady_cycles = steady.size();
-  facts.amplitude = Mean(values_of(&CycleFacts::amplitude));
-  facts.peak_force = Mean(values_of(&CycleFacts::peak_force));
-  facts.energy_per_cycle = Mean(values_of(&CycleFacts::energy));
-  facts.energy_ratio = EnergyRatio(facts.energy_per_cycle, facts.amplitude, facts.peak_force);
-  facts.asymmetry = Asymmetry(steady, facts.peak_force);
-  const std::vector<double> sliding = values_of(&CycleFacts::sliding_amplitude);
-  if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
-  const std::vector<double> gaps = values_of(&CycleFacts::half_gap);
-  if (!gaps.empty()) facts.half_gap = Mean(gaps);
-  if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
-  return facts;
+  return std::hypot(noise_of(record.force, record.displacement),
+                    noise_of(record.displacement, record.force));
 }
 
 }  // namespace
 
 bool Slides(const LoopFacts& facts) {
-  const bool has_gap = facts.half_gap && *facts.half_gap > SlidingRules::kGap * facts.peak_force;
+  // [W/(4XT*)] Mindlin's contact has it at twice its gross-slip displacement, beyond which the gap
+  // at mid-stroke is that of the slip force.
+  constexpr double kEnergyRatio = 0.6;
+  constexpr double kGap = 0.5;  // [T*] less is no plateau: the strokes were not separated
+  constexpr double kUneven = 0.1;
+  const bool has_gap = facts.half_gap && *facts.half_gap > kGap * facts.peak_force;
   if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
   const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
-  return facts.energy_ratio >= SlidingRules::kEnergyRatio ||
-         std::abs(even - 1) < SlidingRules::kUneven;
+  return facts.energy_ratio >= kEnergyRatio || std::abs(even - 1) < kUneven;
 }
 
 bool RanAway(const LoopFacts& facts, double slip_force) {
@@ -230,26 +309,91 @@ bool RanAway(const LoopFacts& facts, double slip_force) {
 bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
-  return facts.energy_per_cycle >= SlidingRules::kFull * rectangle;
+  return facts.energy_per_cycle >= 0.85 * rectangle;
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
                        int force_sense) {
   Validate(record);
   if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
-  if (force_sense == 1) return MeasureInSense(record, reversals);
-  if (force_sense != -1) ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
-  std::vector<double> turned(record.force.begin(), record.force.end());
-  for (double& force : turned) force = -force;
-  RecordView in_sense = record;
-  in_sense.force = turned;
-  return MeasureInSense(in_sense, reversals);
+  if (std::abs(force_sense) != 1) ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
+  LoopFacts facts;
+  std::vector<Cycle> cycles;
+  const std::vector<std::size_t> points = TurningPoints(record.displacement, reversals);
+  MeasureStrokes(record, points, facts);
+  for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
+    const auto of_cycle = std::span(points).subspan(k, 3);
+    cycles.push_back(CycleOf(record, of_cycle));
+    facts.cycles.push_back(MeasureCycle(record, of_cycle, cycles.back()));
+  }
+  facts.closed = !facts.cycles.empty();
+  if (!facts.closed) return facts;
+  const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
+  std::vector<Cycle> steady;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    facts.cycles[k].steady = facts.cycles[k].amplitude >= kSteady * widest;
+    if (facts.cycles[k].steady) steady.push_back(cycles[k]);
+  }
+  // Returns the values of the steady cycles that have the fact.
+  const auto values_of = [&](auto fact) {
+    std::vector<double> values;
+    for (const CycleFacts& cycle : facts.cycles) {
+      const std::optional<double> value = cycle.*fact;
+      if (cycle.steady && value) values.push_back(*value);
+    }
+    return values;
+  };
+  facts.steady_cycles = steady.size();
+  facts.peak_force = Median(values_of(&CycleFacts::peak_force));
+  facts.energy_per_cycle = Mean(values_of(&CycleFacts::energy));
+  facts.energy_ratio = Mean(values_of(&CycleFacts::energy_ratio));
+  facts.asymmetry = Asymmetry(steady, facts.peak_force);
+  const std::vector<double> sliding = values_of(&CycleFacts::sliding_amplitude);
+  if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
+  const std::vector<double> gaps = values_of(&CycleFacts::half_gap);
+  if (!gaps.empty()) facts.half_gap = Mean(gaps);
+  if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
+  if (force_sense < 0) TurnForce(facts);
+  return facts;
 }
 
-LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense) {
-  RecordView record = prepared.readings();
-  record.displacement = prepared.displacement();
-  return MeasureFacts(record, prepared.reversals, force_sense);
+void TurnForce(LoopFacts& facts) {
+  const auto turn = [](std::optional<double>& value) {
+    if (value) *value = -*value;
+  };
+  for (CycleFacts& cycle : facts.cycles) {
+    cycle.energy = -cycle.energy;
+    cycle.energy_ratio = -cycle.energy_ratio;
+    turn(cycle.half_gap);
+    turn(cycle.centre_force);
+  }
+  facts.energy_per_cycle = -facts.energy_per_cycle;
+  facts.energy_ratio = -facts.energy_ratio;
+  turn(facts.half_gap);
+}
+
+int ForceSense(const RecordView& record, const LoopFacts& facts) {
+  constexpr double kThin = 0.01;           // of the rectangle round the loop
+  constexpr double kSureDeviations = 5.0;  // one record in 3.5 million
+  const auto sign_of = [](double value) { return (value > 0) - (value < 0); };
+  const Extremes displacement = ExtremesOf(record.displacement);
+  const Extremes force = ExtremesOf(record.force);
+  const auto cycles = static_cast<double>(facts.cycles.size());
+  const double rectangles =
+      cycles * (displacement.greatest - displacement.least) * (force.greatest - force.least);
+  double energies = 0.0;
+  for (const CycleFacts& cycle : facts.cycles) energies += cycle.energy;
+  if (std::abs(energies) > kThin * rectangles &&
+      std::abs(energies) > kSureDeviations * NoiseOfEnergies(record)) {
+    return sign_of(energies);
+  }
+  const double mean_displacement = Mean(record.displacement);
+  const double mean_force = Mean(record.force);
+  double covariance = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    covariance += (record.displacement[i] - mean_displacement) * (record.force[i] - mean_force);
+  }
+  return sign_of(covariance);
 }
 
 }  // namespace mindahl::loop

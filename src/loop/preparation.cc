@@ -10,7 +10,6 @@
 
 #include "core/draws.h"
 #include "core/extremes.h"
-#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
@@ -30,11 +29,15 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
-  const bool is_coarse = prepared.encoder_step > CycleRules::kCoarse * (highest / 2 - lowest / 2);
+  // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
+  constexpr double kCoarse = 1e-3;
+  const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
   return prepared.gate.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
 }
 
-void Smooth(PreparedRecord& prepared) {
+void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
+  prepared.encoder_step = EncoderStep(prepared.readings().displacement);
+  prepared.displacement_noise = DisplacementNoise(prepared, options);
   if (!(prepared.displacement_noise > 0)) return;
   const std::span<const double> displacement = prepared.readings().displacement;
   prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
@@ -46,9 +49,8 @@ void Smooth(PreparedRecord& prepared) {
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
   Interpolated interpolated = FindAndInterpolate(prepared.record);
-  if (interpolated.glitches.empty()) return;
   GlitchCount& count = prepared.glitches;
-  for (std::size_t i = 0; i < prepared.size(); ++i) {
+  for (std::size_t i = 0; i < interpolated.glitches.size(); ++i) {
     if (!interpolated.glitches[i]) continue;
     prepared.counts[i] = 0;
     if (count.total++ == 0) count.first = i;
@@ -61,85 +63,63 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
   const RecordView readings = prepared.readings();
   const std::span<const double> excitation =
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
-  ReversalGate& choice = prepared.gate;
-  if (!options.reversal_gate) choice = ChooseReversalGate(excitation);
-  choice.gate = options.reversal_gate.value_or(
-      std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
-  prepared.reversals = FindReversals(excitation, choice.gate);
-  choice.count = prepared.reversals.size();
-  if (!choice.certain) return;
-  choice.other_gate = choice.gate;
-  choice.other_count = choice.count;
-}
-
-/// Leaves out the samples of which a predicate is false.
-template <typename Predicate>
-void KeepWhere(PreparedRecord& prepared, const Predicate& counts) {
-  for (std::size_t i = 0; i < prepared.size(); ++i) {
-    if (!counts(i)) prepared.counts[i] = 0;
-  }
+  if (!options.reversal_gate) prepared.gate = ChooseReversalGate(excitation);
+  prepared.gate.gate = options.reversal_gate.value_or(
+      std::max(prepared.gate.gate, ReachOfKnownNoise(prepared.record, options)));
+  prepared.reversals = FindReversals(excitation, prepared.gate.gate);
 }
 
 /// Returns the first sample of a cycle, counted from 1; the record's size beyond the last.
 std::size_t StartOfCycle(const PreparedRecord& prepared, std::size_t cycle) {
-  // Two reversals a cycle; the first of them ends the way in.
   if (cycle == 1) return 0;
-  const std::size_t turn = 2 * (cycle - 1) - 1;
+  const std::size_t turn = 2 * cycle - 3;  // two reversals a cycle, the first ends the way in
   return turn < prepared.reversals.size() ? prepared.reversals[turn] : prepared.size();
 }
 
-void LeaveOutBeyondRanges(PreparedRecord& prepared, std::size_t number,
-                          const PreparationOptions& options) {
-  const auto require = [&](const CountRange& range, std::string_view what, std::size_t has,
-                           const std::string& of_which = "") {
+/// Returns the samples [first, last) of the cycles and samples that are asked for.
+std::pair<std::size_t, std::size_t> ChosenSamples(const PreparedRecord& prepared,
+                                                  std::size_t number,
+                                                  const PreparationOptions& options) {
+  const auto require = [&](const CountRange& range, std::string_view what, std::size_t has) {
     if (range.first <= has) return;
-    throw InvalidArgument(fmt::format("{} {}:{} contain nothing of record {}: it has {} {}{}", what,
-                                      range.first, range.last, number + 1, has,
-                                      has == 1 ? what.substr(0, what.size() - 1) : what, of_which));
+    throw InvalidArgument(fmt::format("{} {}:{} contain nothing of record {}, which has {} of them",
+                                      what, range.first, range.last, number + 1, has));
   };
+  std::size_t first = 0;
+  std::size_t last = prepared.size();
   if (options.cycles) {
     // The way in and the way out are cycles too, which the number of complete ones need not hold.
-    const std::size_t begun = 1 + prepared.reversals.size() / 2;
-    const std::size_t complete = prepared.measures.cycles;
-    require(*options.cycles, "cycles", begun,
-            complete < begun ? fmt::format(" that are begun, {} complete", complete) : "");
+    require(*options.cycles, "cycles", 1 + prepared.reversals.size() / 2);
+    first = StartOfCycle(prepared, options.cycles->first);
     // One beyond the last is none: no number of cycles is so large.
-    const std::size_t last = std::min(options.cycles->last, prepared.size());
-    const std::size_t begin = StartOfCycle(prepared, options.cycles->first);
-    const std::size_t end = StartOfCycle(prepared, last + 1);
-    KeepWhere(prepared, [&](std::size_t i) { return i >= begin && i < end; });
+    last = StartOfCycle(prepared, std::min(options.cycles->last, prepared.size()) + 1);
   }
   if (options.samples) {
     require(*options.samples, "samples", prepared.size());
-    const auto& [first, last] = *options.samples;
-    KeepWhere(prepared, [&](std::size_t i) { return i + 1 >= first && i < last; });
+    first = std::max(first, options.samples->first - 1);
+    last = std::min(last, options.samples->last);
   }
+  return {first, last};
 }
 
 void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOptions& options) {
   const RecordView& record = prepared.record;
-  if (options.load_window) {
-    if (record.normal_load.empty()) {
-      throw InvalidArgument(
-          "--select load=LO:HI needs a normal load in every record: name its column with "
-          "--normal-load-column");
-    }
-    const auto& [lower, upper] = *options.load_window;
-    const auto lies_inside = [&](double load) { return load >= lower && load <= upper; };
-    if (std::ranges::none_of(record.normal_load, lies_inside)) {
-      const auto [least, greatest] = ExtremesOf(record.normal_load);
-      throw InvalidArgument(
-          fmt::format("--select load={}:{} holds no sample: the normal load runs from {:.6g} to "
-                      "{:.6g} N",
-                      lower, upper, least, greatest));
-    }
-    KeepWhere(prepared, [&](std::size_t i) { return lies_inside(record.normal_load[i]); });
+  if (options.load_window && record.normal_load.empty()) {
+    throw InvalidArgument(
+        "--select load=LO:HI needs a normal load in every record: name its column with "
+        "--normal-load-column");
   }
-  LeaveOutBeyondRanges(prepared, number, options);
-  if (!options.held_out.empty() && !options.held_out[number].empty()) {
-    const std::vector<bool>& held_out = options.held_out[number];
-    RequireSameSize("held-out mask", held_out.size(), "samples", record.size());
-    KeepWhere(prepared, [&](std::size_t i) { return !held_out[i]; });
+  const bool has_mask = !options.held_out.empty() && !options.held_out[number].empty();
+  if (has_mask) {
+    RequireSameSize("held-out mask", options.held_out[number].size(), "samples", record.size());
+  }
+  const auto [first, last] = ChosenSamples(prepared, number, options);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const bool is_chosen =
+        i >= first && i < last && !(has_mask && options.held_out[number][i]) &&
+        !(options.load_window && (record.normal_load[i] < options.load_window->lower ||
+                                  record.normal_load[i] > options.load_window->upper));
+    if (!is_chosen) prepared.counts[i] = 0;
   }
   prepared.left_out = static_cast<std::size_t>(std::ranges::count(prepared.counts, 0));
   if (prepared.left_out == record.size()) {
@@ -220,22 +200,21 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   result.excitation = options.excitation;
   result.records.reserve(records.size());
   int votes = 0;
-  for (const RecordView& record : records) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records.emplace_back();
-    prepared.record = record;
+    prepared.record = records[r];
     LeaveOutGlitches(prepared);
     FindTurns(prepared, options);
-    if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals);
-  }
-  result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    PreparedRecord& prepared = result.records[r];
-    prepared.measures = MeasureLoop(prepared.readings(), prepared.reversals);
-    prepared.encoder_step = EncoderStep(prepared.readings().displacement);
-    prepared.displacement_noise = DisplacementNoise(prepared, options);
-    Smooth(prepared);
+    Smooth(prepared, options);
+    RecordView followed = prepared.readings();
+    followed.displacement = prepared.displacement();
+    prepared.facts = MeasureFacts(followed, prepared.reversals, 1);
+    votes += ForceSense(prepared.readings(), prepared.facts);
     LeaveOut(prepared, r, options);
   }
+  result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
+  if (result.force_sense > 0) return result;
+  for (PreparedRecord& prepared : result.records) TurnForce(prepared.facts);
   return result;
 }
 

@@ -5,9 +5,8 @@
 #include <optional>
 #include <ranges>
 
-#include "loop/rules.h"
+#include "loop/excursions.h"
 #include "loop/statistics.h"
-#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/disturbances.h"
 
@@ -57,15 +56,32 @@ std::vector<Excursion> FindExcursions(std::span<const double> displacement) {
   return excursions;
 }
 
-std::size_t CountReversals(std::span<const Excursion> excursions, double gate) {
-  std::size_t ends = 0;
-  for (const Excursion& excursion : excursions) {
-    if (excursion.range > gate) ends += excursion.reversals;
-  }
-  return ends == 0 ? 0 : ends - 1;  // one stroke is left, with a reversal at neither end
-}
-
 namespace {
+
+// When an excursion of the displacement looks like noise, and when a gate is certain.
+
+/// [of the main strokes' duration] Longest noise; a nested loop of few samples is not shorter.
+constexpr double kBrief = 1.0 / 3;
+/// [of the main strokes' duration] Longest jump of the gauge beyond the white noise: an inner
+/// loop that the drive makes on its way may last longer.
+constexpr double kSudden = 1.0 / 8;
+/// [of the excursion's range] Least fraction in one step between samples of a jump: a drive that
+/// turns twice takes more samples to do so, while noise and an encoder's last digit take one.
+constexpr double kJump = 0.4;
+/// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
+/// twentieth of records exceed, and whose deviation is an estimate.
+constexpr double kBeyond = 1.25;
+/// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
+constexpr double kRough = 0.05;
+/// [of the excursions that look like noise] Largest fraction classified otherwise.
+constexpr double kExceptions = 0.05;
+/// [-] Ratio of a plateau's ends below which it is narrow.
+constexpr double kClear = 2.5;
+/// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
+/// drive: of random walks, whose excursions are of all ranges, it is not.
+constexpr double kOutnumber = 20.0;
+/// So many wider ones that are as brief make a turn just before an end of the record unclear.
+constexpr std::size_t kMany = 8;
 
 /// Classifies an excursion by itself.
 enum class Look : unsigned char {
@@ -79,31 +95,35 @@ enum class Look : unsigned char {
 struct JudgedExcursion : Excursion {
   Look look = Look::kDrive;
 };
-using Excursions = std::span<const JudgedExcursion>;
 
 /// Returns the median duration [samples] of the strokes at least half as wide as the widest.
 double MainDuration(std::span<const Excursion> excursions) {
-  std::vector<std::size_t> durations;
-  durations.reserve(excursions.size());
+  std::vector<double> durations;
   for (const Excursion& excursion : excursions) {
-    if (excursion.range >= excursions.back().range / 2) durations.push_back(excursion.duration());
+    if (excursion.range >= excursions.back().range / 2)
+      durations.push_back(static_cast<double>(excursion.duration()));
   }
-  return static_cast<double>(UpperMedian(durations));
+  return Median(durations);
 }
 
 /// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
 double ReachOfNoise(std::span<const double> displacement, double full_range) {
   const double noise = EstimateDisplacementNoise(displacement);
-  if (noise > ReversalRules::kRough * full_range) return 0.0;
+  if (noise > kRough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
-  return ReversalRules::kBeyond * 2 * noise *
-         std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
+  return kBeyond * 2 * noise * std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
 }
 
-/// True if one step makes much of the excursion; false for long ones, which no jump makes.
+/// True if one step between samples makes much of an excursion; false for long ones, which no jump
+/// makes.
 bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
-  return excursion.duration() <= kLongest && IsOneStep(displacement, excursion);
+  if (excursion.duration() > kLongest) return false;
+  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
+    const double step = std::abs(displacement[i] - displacement[i - 1]);
+    if (step >= kJump * excursion.range) return true;
+  }
+  return false;
 }
 
 /// Looks at excursions one by one; empty where none is brief, so that there is no noise.
@@ -116,23 +136,21 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
            static_cast<double>(excursion.duration()) <= share * main_duration;
   };
   const auto is_brief = [&](const Excursion& excursion) {
-    return lasts_at_most(excursion, ReversalRules::kBrief);
+    return lasts_at_most(excursion, kBrief);
   };
   if (std::ranges::none_of(excursions, is_brief)) return {};
   std::vector<JudgedExcursion> judged;
   judged.reserve(excursions.size());
-  for (const Excursion& excursion : excursions) judged.push_back({excursion});
   const double reach = ReachOfNoise(displacement, excursions.back().range);
-  for (JudgedExcursion& one : judged) {
-    if (one.range >= main_range) continue;
+  for (const Excursion& one : excursions) {
     const bool is_brief_inside = is_brief(one) && one.reversals != 1;
-    if (one.range <= reach) {
-      one.look = is_brief_inside ? Look::kNoise : Look::kUnclear;
-    } else if (lasts_at_most(one, ReversalRules::kSudden) && Jumps(displacement, one)) {
-      one.look = one.reversals == 1 ? Look::kUnclear : Look::kNoise;
-    } else if (is_brief_inside) {
-      one.look = Look::kOdd;
+    Look look = is_brief_inside ? Look::kOdd : Look::kDrive;
+    if (one.range < main_range && one.range <= reach) {
+      look = is_brief_inside ? Look::kNoise : Look::kUnclear;
+    } else if (lasts_at_most(one, kSudden) && Jumps(displacement, one)) {
+      look = one.reversals == 1 ? Look::kUnclear : Look::kNoise;
     }
+    judged.push_back({one, look});
   }
   // An apparent reversal just before an end of the record is unclear where many disturbances are as
   // brief and wider: the record may end within one of them.
@@ -140,7 +158,7 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
   for (JudgedExcursion& one : std::views::reverse(judged)) {
     if (one.look == Look::kOdd) ++wider;
     const bool ends = one.reversals == 1 && is_brief(one) && one.look == Look::kDrive;
-    if (ends && wider >= ReversalRules::kMany) one.look = Look::kUnclear;
+    if (ends && wider >= kMany) one.look = Look::kUnclear;
   }
   return judged;
 }
@@ -159,7 +177,7 @@ struct Plateau {
 
 /// Returns the widest of the plateaus below the drive's strokes that are nearly as good as the
 /// best.
-Plateau WidestPlateau(Excursions excursions) {
+Plateau WidestPlateau(std::span<const JudgedExcursion> excursions) {
   const auto noise = static_cast<std::size_t>(
       std::ranges::count(excursions, Look::kNoise, &JudgedExcursion::look));
   if (noise == 0) return {};
@@ -173,8 +191,7 @@ Plateau WidestPlateau(Excursions excursions) {
     plateaus.push_back({excursions[i].range, excursions[i + 1].range, i + 1, exceptions});
     fewest = std::min(fewest, exceptions);
   }
-  const double allowed =
-      static_cast<double>(fewest) + ReversalRules::kExceptions * static_cast<double>(noise);
+  const double allowed = static_cast<double>(fewest) + kExceptions * static_cast<double>(noise);
   Plateau widest;
   for (const Plateau& plateau : plateaus) {
     const bool is_good = static_cast<double>(plateau.exceptions) <= allowed;
@@ -183,29 +200,18 @@ Plateau WidestPlateau(Excursions excursions) {
   return widest;
 }
 
-/// @param other  another gate that competes
-ReversalGate Under(std::span<const Excursion> excursions, double gate,
-                   std::optional<double> other = {}) {
-  const std::size_t count = CountReversals(excursions, gate);
-  return {.gate = gate,
-          .count = count,
-          .certain = !other,
-          .other_count = other ? CountReversals(excursions, *other) : count,
-          .other_gate = other.value_or(gate)};
-}
-
 }  // namespace
 
 ReversalGate ChooseReversalGate(std::span<const double> displacement) {
   const std::vector<Excursion> excursions = FindExcursions(displacement);
-  if (excursions.size() < 2) return Under(excursions, 0.0);
+  if (excursions.size() < 2) return {};
   const Plateau chosen = WidestPlateau(Judge(displacement, excursions));
-  if (chosen.below == 0) return Under(excursions, 0.0);
-  if (chosen.upper >= ReversalRules::kClear * chosen.lower) return Under(excursions, chosen.gate());
+  if (chosen.below == 0) return {};
+  const bool certain = chosen.upper >= kClear * chosen.lower;
+  const auto below = static_cast<double>(chosen.below);
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
-  return static_cast<double>(chosen.below) < ReversalRules::kOutnumber * kept
-             ? Under(excursions, 0.0, chosen.gate())
-             : Under(excursions, chosen.gate(), 0.0);
+  const bool is_noise = certain || below >= kOutnumber * kept;
+  return {.gate = is_noise ? chosen.gate() : 0.0, .certain = certain};
 }
 
 }  // namespace mindahl::loop

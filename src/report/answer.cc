@@ -257,12 +257,12 @@ class Writer {
       }
       parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
       parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
-      parts.push_back(fmt::format("{} cycle{}", widest.measures.cycles,
-                                  widest.measures.cycles == 1 ? "" : "s"));
+      parts.push_back(
+          fmt::format("{} cycle{}", facts.complete_cycles, facts.complete_cycles == 1 ? "" : "s"));
       if (loop::Slides(facts)) parts.emplace_back("it slides");
     } else {
-      parts = {"±" + Quantity(widest.measures.amplitude, units.displacement, 4),
-               "±" + Quantity(widest.measures.peak_force, units.force, 4), "no closed cycle"};
+      parts = {"±" + Quantity(facts.amplitude, units.displacement, 4),
+               "±" + Quantity(facts.peak_force, units.force, 4), "no closed cycle"};
     }
     if (fit_.is_load_series() && widest.normal_load) {
       parts.push_back("at N = " + Quantity(*widest.normal_load, "N", 4));

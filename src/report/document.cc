@@ -80,15 +80,14 @@ Json MeasuredJson(const Report& report) {
   const auto if_closed = [&](std::optional<double> value) {
     return facts.closed ? NumberOrNull(value) : Json();
   };
-  const auto else_measured = [&](double of_cycles, double of_record) {
-    if (report.failed()) return Json();
-    return NumberOrNull(facts.closed ? of_cycles : of_record);
+  const auto if_fitted = [&](double value) {
+    return report.failed() ? Json() : NumberOrNull(value);
   };
   return {{"half_gap",
            {{"value", if_closed(facts.half_gap)},
             {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
-          {"amplitude", else_measured(facts.amplitude, widest.measures.amplitude)},
-          {"peak_force", else_measured(facts.peak_force, widest.measures.peak_force)},
+          {"amplitude", if_fitted(facts.amplitude)},
+          {"peak_force", if_fitted(facts.peak_force)},
           {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
           {"energy_ratio", if_closed(facts.energy_ratio)},
           {"asymmetry", if_closed(facts.asymmetry)},
@@ -236,7 +235,7 @@ Json DocumentOf(const Report& report) {
   std::size_t cycles = 0;
   std::size_t reversals = 0;
   for (const RecordFit& record : fit.records) {
-    cycles += record.measures.cycles;
+    cycles += record.facts.complete_cycles;
     reversals += record.reversals.size();
   }
   Json next;

@@ -105,8 +105,7 @@ namespace {
 constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::string_view>>({
     // about the record
     {"reversals_uncertain",
-     "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
-     "--reversal-gate"},
+     "{count} reversals, under a gate of {gate:excitation} that is not certain: --reversal-gate"},
     {"glitches_left_out", "measurement faults are left out"},
     {"no_closed_cycle",
      "no cycle ends where it began: record one and a half or more of one amplitude"},

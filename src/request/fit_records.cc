@@ -228,7 +228,7 @@ std::optional<Trial> WithoutFirstCycle(const FitOptions& options, const FitResul
   constexpr double kWorse = 4.0;
   constexpr std::size_t kFewestCycles = 3;
   const identification::RecordFit& record = fit.records.front();
-  const std::size_t cycles = record.measures.cycles;
+  const std::size_t cycles = record.facts.complete_cycles;
   if (fit.records.size() > 1 || options.preparation.cycles || options.preparation.samples ||
       cycles < kFewestCycles) {
     return std::nullopt;

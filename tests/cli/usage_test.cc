@@ -102,14 +102,14 @@ const std::vector<BadUsage> kBadUsage = {
      "--select load=LO:HI needs a normal load in every record: name its column with "
      "--normal-load-column"},
     {"fit @ --load-window 5:4", "--load-window: 'load=5:4' is invalid"},
-    {"fit & --select load=5:6",
-     "--select load=5:6 holds no sample: the normal load runs from 100 to 100 N"},
-    {"fit @ --select cycles=40:50", "cycles 40:50 contain nothing of record 1: it has"},
+    {"fit & --select load=5:6", "nothing is left of record 1"},
+    {"fit @ --select cycles=40:50", "cycles 40:50 contain nothing of record 1, which has"},
     {"fit @ --cycles 0:2",
      "--cycles: 'cycles=0:2' is invalid: write cycles=LO:HI or samples=LO:HI, counted from 1"},
     {"fit @ --select samples=5:4",
      "--select samples: '5:4' is empty: the first number must not be the larger"},
-    {"fit @ --samples 100000:200000", "samples 100000:200000 contain nothing of record 1: it has"},
+    {"fit @ --samples 100000:200000",
+     "samples 100000:200000 contain nothing of record 1, which has"},
     // The outputs
     {"fit @ --json # --plot loop.txt", ".svg or .png"},
     {"fit @ --json /no/such/x.json --residuals #", "there is no directory '/no/such'"},

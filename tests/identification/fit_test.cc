@@ -114,7 +114,7 @@ TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   const FitResult fit = FitOne(Loop(2.0));
   EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
   EXPECT_EQ(fit.records[0].gate.gate, 0.0);
-  EXPECT_EQ(fit.records[0].measures.cycles, 2u);
+  EXPECT_EQ(fit.records[0].facts.complete_cycles, 2u);
 
   const FitResult gated = FitOne(Loop(), {.preparation = {.reversal_gate = 3 * kReach}});
   EXPECT_TRUE(gated.records[0].reversals.empty()) << "nothing is a reversal any more";
@@ -123,7 +123,7 @@ TEST(Fit, CyclesOfReversalsAndGateAreReported) {
 TEST(Fit, WidestRecordIsTheOneOfLargestAmplitude) {
   const History narrow = Cycling(Wave::kSine, kReach / 2, 2.0, 120);
   const FitResult fit = Fit(std::vector{LoopOf(kLaw, narrow), Loop()}, {});
-  EXPECT_DOUBLE_EQ(fit.WidestRecord().measures.amplitude, kReach);
+  EXPECT_DOUBLE_EQ(fit.WidestRecord().facts.amplitude, kReach);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
 }
 

@@ -45,7 +45,7 @@ std::vector<std::string> Statements(const FitResult& fit) {
     add_all(record.residual);
     add_all(record.fitted_force);
     add_all(std::array{static_cast<double>(record.left_out), record.displacement_noise,
-                       record.structure.repeatable_share, record.measures.amplitude});
+                       record.structure.repeatable_share, record.facts.amplitude});
   }
   return all;
 }

@@ -169,7 +169,7 @@ TEST(Grade, MisfitIsHeldAgainstWhatWasMeasured) {
   fit.law.slip_force = 1e6;  // runs away
   EXPECT_EQ(fit.MisfitScale(), 8.0);
   fit.response = loop::Channel::kDisplacement;
-  EXPECT_EQ(fit.MisfitScale(), fit.records[0].measures.amplitude);
+  EXPECT_EQ(fit.MisfitScale(), fit.records[0].facts.amplitude);
 }
 
 TEST(Grade, WhiteNoiseIsNotMissed) {

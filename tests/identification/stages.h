@@ -174,8 +174,8 @@ inline identification::FitResult MadeFit(double peak_force) {
     estimate.status = identification::ParameterStatus::kFree;
   }
   identification::RecordFit& record = result.records.emplace_back();
-  record.measures.amplitude = 1e-6;
-  record.measures.peak_force = peak_force;
+  record.facts.amplitude = 1e-6;
+  record.facts.peak_force = peak_force;
   return result;
 }
 

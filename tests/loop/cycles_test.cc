@@ -1,7 +1,7 @@
 #include <random>
 
 #include "../support/histories.h"
-#include "loop/strokes.h"
+#include "mindahl/loop/facts.h"
 #include "mindahl/loop/reversals.h"
 #include "support/prelude.h"
 
@@ -46,104 +46,114 @@ std::vector<std::size_t> Reversals(const Record& record) {
   return FindReversals(record.displacement, 0.0);
 }
 
-TEST(CycleEnergies, AreTheAreaOfTheLoop) {
+LoopFacts FactsOf(const Record& record) { return MeasureFacts(record, Reversals(record), 1); }
+
+int SenseOf(const Record& record) { return ForceSense(record, FactsOf(record)); }
+
+std::vector<double> EnergiesOf(const Record& record) {
+  std::vector<double> energies;
+  for (const CycleFacts& cycle : FactsOf(record).cycles) energies.push_back(cycle.energy);
+  return energies;
+}
+
+TEST(EnergyOfCycles, IsTheAreaOfTheLoop) {
   const Ellipse ellipse;
   const Record record = MakeRecord(ellipse);
-  const auto energies = CycleEnergies(record, Reversals(record));
+  const auto energies = EnergiesOf(record);
   ASSERT_EQ(energies.size(), 3U);  // of 4 cycles from mid-swing, 3 run from extreme to extreme
   for (const double energy : energies) {
     EXPECT_NEAR(energy, Area(ellipse), kPolygon * Area(ellipse));
   }
   const Record from_an_extreme = MakeRecord({.start = kPi / 2});
-  EXPECT_EQ(CycleEnergies(from_an_extreme, Reversals(from_an_extreme)).size(), 4U);
+  EXPECT_EQ(EnergiesOf(from_an_extreme).size(), 4U);
 }
 
-TEST(CycleEnergies, DoNotChangeWithOffsets) {
+TEST(EnergyOfCycles, DoesNotChangeWithOffsets) {
   const Ellipse plain;
   // Far off centre: 1e3 times the amplitude; rounding is then 1e3 times larger too.
   constexpr double kRounding = 1e3 * kSamplesPerCycle * std::numeric_limits<double>::epsilon();
   const Record record = MakeRecord(plain);
   const Record moved = MakeRecord({.centre = 2e-3, .offset = 3e4});
-  const auto energies = CycleEnergies(record, Reversals(record));
-  const auto moved_energies = CycleEnergies(moved, Reversals(moved));
+  const auto energies = EnergiesOf(record);
+  const auto moved_energies = EnergiesOf(moved);
   ASSERT_EQ(moved_energies.size(), energies.size());
   for (std::size_t i = 0; i < energies.size(); ++i) {
     EXPECT_NEAR(moved_energies[i], energies[i], kRounding * energies[i]);
   }
 }
 
-TEST(CycleEnergies, CloseADriftingLoopByAChord) {
+TEST(EnergyOfCycles, ClosesADriftingLoopByAChord) {
   // A ratchet: the second maximum lies beyond the first. From (2,2) by (0,0) to (3,1) and back by
   // the chord: by hand, ∮T dx = −2 + 1.5 − 1.5 = −2.
   const Record record{{1, 2, 0, 3, 1}, {0, 2, 0, 1, 0}, {}, {}};
-  const auto energies = CycleEnergies(record, Reversals(record));
+  const auto energies = EnergiesOf(record);
   ASSERT_EQ(energies.size(), 1U);
   EXPECT_DOUBLE_EQ(energies.front(), -2.0);
 }
 
-TEST(CycleEnergies, NeedAClosedCycleAndAnEnergyThatADoubleHolds) {
+TEST(EnergyOfCycles, NeedsAClosedCycleAndAnEnergyThatADoubleHolds) {
   const Record huge{{0, 1e200, -1e200, 1e200, -1e200}, {0, 1e200, -2e200, 3e200, 0}, {}, {}};
-  EXPECT_THROW(CycleEnergies(huge, Reversals(huge)), InvalidArgument);
+  EXPECT_THROW(EnergiesOf(huge), InvalidArgument);
   const Record record = MakeRecord({.cycles = 0.6});
-  EXPECT_TRUE(CycleEnergies(record, Reversals(record)).empty());
-  EXPECT_TRUE(CycleEnergies(Record{{0, 1}, {0, 1}, {}, {}}, {}).empty());
+  EXPECT_TRUE(EnergiesOf(record).empty());
+  EXPECT_TRUE(EnergiesOf(Record{{0, 1}, {0, 1}, {}, {}}).empty());
 }
 
-TEST(MeasureLoop, ReadsAmplitudeAndForce) {
+TEST(MeasureFacts, ReadsAmplitudeAndForce) {
   const Ellipse ellipse{.lag = 0.0, .centre = 5e-6, .offset = -7.0};
   constexpr double kRounding = 1e-14;  // of sums of a few numbers of this size
   const Record record = MakeRecord(ellipse);
-  const LoopMeasures measures = MeasureLoop(record, Reversals(record));
+  const LoopFacts measures = FactsOf(record);
   EXPECT_NEAR(measures.amplitude, 2e-6, kRounding * 5e-6);
   EXPECT_NEAR(measures.peak_force, 30.0, kRounding * 30);
 }
 
-TEST(MeasureLoop, ReadsThePeakForceWhereverInTheSwingItIs) {
+TEST(MeasureFacts, ReadsThePeakForceWhereverInTheSwingItIs) {
   const Record record = MakeRecord({.lag = 0.4});
   // The mean of a sine over 1/40 of a cycle about its peak is short of it by (π/40)²/6.
   constexpr double kHalfWindow = kPi / 40;
   constexpr double kAveraging = 1.05 * kHalfWindow * kHalfWindow / 6;
-  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kAveraging * 30);
+  EXPECT_NEAR(FactsOf(record).peak_force, 30.0, kAveraging * 30);
 }
 
-TEST(MeasureLoop, ReadsASharpTipExactly) {
+TEST(MeasureFacts, ReadsASharpTipExactly) {
   // A triangle of displacement and force: the peak is one sample, which averaging would blunt.
   const std::vector<double> x = {0,  1,  2,  3,  4,  3, 2, 1, 0, -1, -2,
                                  -3, -4, -3, -2, -1, 0, 1, 2, 3, 4,  3};
   const Record record{x, x, {}, {}};
-  EXPECT_DOUBLE_EQ(MeasureLoop(record, Reversals(record)).peak_force, 4.0);
+  EXPECT_DOUBLE_EQ(FactsOf(record).peak_force, 4.0);
 }
 
-TEST(MeasureLoop, NoiseDoesNotRaiseThePeakForce) {
+TEST(MeasureFacts, NoiseDoesNotRaiseThePeakForce) {
   Record record = MakeRecord({.lag = 0.4, .cycles = 20});
   std::mt19937_64 engine(3);
   constexpr double kNoise = 0.6;  // 2 % of the peak; its extremes would add three times as much
   std::normal_distribution<double> noise(0.0, kNoise);
   for (double& force : record.force) force += noise(engine);
-  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kNoise);
+  EXPECT_NEAR(FactsOf(record).peak_force, 30.0, kNoise);
 }
 
-TEST(MeasureLoop, ASpikeInOneSwingIsNoPeakForce) {
+TEST(MeasureFacts, ASpikeInOneSwingIsNoPeakForce) {
   Record record = MakeRecord({});
-  const double peak = MeasureLoop(record, Reversals(record)).peak_force;
+  const double peak = FactsOf(record).peak_force;
   record.force[1600] += 1000;
   record.force[2100] -= 1000;
-  EXPECT_DOUBLE_EQ(MeasureLoop(record, Reversals(record)).peak_force, peak);
+  EXPECT_DOUBLE_EQ(FactsOf(record).peak_force, peak);
 }
 
-TEST(MeasureLoop, NestedSwingsDoNotEnterTheAmplitude) {
+TEST(MeasureFacts, NestedSwingsDoNotEnterTheAmplitude) {
   //                  main swings 0 ↔ 10, with a nested loop 6 → 4 → 6 on the way up
   const std::vector<double> x = {0, 5, 10, 5, 0, 6, 4, 10, 5, 0, 5, 10};
   const Record record{x, x, {}, {}};
-  const LoopMeasures measures = MeasureLoop(record, Reversals(record));
+  const LoopFacts measures = FactsOf(record);
   EXPECT_DOUBLE_EQ(measures.amplitude, 5.0);
   EXPECT_DOUBLE_EQ(measures.peak_force, 5.0);
 }
 
-TEST(MeasureLoop, CountsCompleteCycles) {
+TEST(MeasureFacts, CountsCompleteCycles) {
   const auto cycles = [](double count, double start) {
     const Record record = MakeRecord({.cycles = count, .start = start});
-    return MeasureLoop(record, Reversals(record)).cycles;
+    return FactsOf(record).complete_cycles;
   };
   for (const double start : {0.0, kPi / 2, kPi, 3 * kPi / 2}) {
     EXPECT_EQ(cycles(1.0, start), 1U) << start;
@@ -155,14 +165,14 @@ TEST(MeasureLoop, CountsCompleteCycles) {
   EXPECT_EQ(cycles(0.2, 0.0), 0U);
 }
 
-TEST(MeasureLoop, MonotoneLoadingHasNoCycleAndRestNoAmplitude) {
-  const LoopMeasures monotone = MeasureLoop(Record{{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
-  EXPECT_EQ(monotone.cycles, 0U);
+TEST(MeasureFacts, MonotoneLoadingHasNoCycleAndRestNoAmplitude) {
+  const LoopFacts monotone = FactsOf(Record{{1, 2, 4}, {0, 3, 5}, {}, {}});
+  EXPECT_EQ(monotone.complete_cycles, 0U);
   EXPECT_DOUBLE_EQ(monotone.amplitude, 1.5);
   EXPECT_DOUBLE_EQ(monotone.peak_force, 2.5);
-  const LoopMeasures constant = MeasureLoop(Record{{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
+  const LoopFacts constant = FactsOf(Record{{2, 2, 2}, {1, 1, 1}, {}, {}});
   EXPECT_EQ(constant.amplitude, 0.0);
-  EXPECT_EQ(constant.cycles, 0U);
+  EXPECT_EQ(constant.complete_cycles, 0U);
 }
 
 TEST(ForceSense, OfElasticLineFollowsItsSlope) {
@@ -173,7 +183,7 @@ TEST(ForceSense, OfElasticLineFollowsItsSlope) {
       for (std::size_t i = 0; i < record.size(); ++i) {
         record.force[i] = offset + slope * record.displacement[i];
       }
-      EXPECT_EQ(ForceSense(record, Reversals(record)), slope > 0 ? 1 : -1);
+      EXPECT_EQ(SenseOf(record), slope > 0 ? 1 : -1);
     }
   }
 }
@@ -191,7 +201,7 @@ TEST(ForceSense, OfStickingContactFollowsItsSlope) {
     for (const double x : record.displacement) {
       record.force.push_back(sign * x + noise * testing::Normal(generator));
     }
-    EXPECT_EQ(ForceSense(record, Reversals(record)), sign > 0 ? 1 : -1) << k;
+    EXPECT_EQ(SenseOf(record), sign > 0 ? 1 : -1) << k;
   }
 }
 
@@ -208,7 +218,7 @@ TEST(ForceSense, OfGrossSlipLoopFollowsEnergyDespiteFallingPlateau) {
       record.force.push_back(-1.0 - 0.01 * i);
     }
   }
-  EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
+  EXPECT_EQ(SenseOf(record), 1);
 }
 
 TEST(ForceSense, FollowsTheEnergyThatExceedsFiveDeviationsOfItsNoise) {
@@ -224,16 +234,16 @@ TEST(ForceSense, FollowsTheEnergyThatExceedsFiveDeviationsOfItsNoise) {
       record.displacement.push_back(x);
       record.force.push_back(-2 * x + friction + (i % 2 == 0 ? noise : -noise));
     }
-    return ForceSense(record, Reversals(record));
+    return SenseOf(record);
   };
   EXPECT_EQ(sign_under(0.8 * 0.939), 1);
   EXPECT_EQ(sign_under(1.2 * 0.939), -1);  // of the spring
 }
 
 TEST(ForceSense, WithoutClosedCycleFollowsTheCovarianceUnlessThereIsNone) {
-  EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
-  EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
-  EXPECT_EQ(ForceSense(Record{{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
+  EXPECT_EQ(SenseOf(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}), 1);
+  EXPECT_EQ(SenseOf(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}), -1);
+  EXPECT_EQ(SenseOf(Record{{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}), 0);
 }
 
 TEST(ForceSense, IsRightOnManyNoisyRecords) {
@@ -244,7 +254,7 @@ TEST(ForceSense, IsRightOnManyNoisyRecords) {
                                 .centre = testing::Uniform(generator, -0.1, 0.1),
                                 .offset = testing::Uniform(generator, -100, 100)});
     for (double& force : record.force) force = sign * force + testing::Normal(generator);
-    ASSERT_EQ(ForceSense(record, Reversals(record)), sign > 0 ? 1 : -1);
+    ASSERT_EQ(SenseOf(record), sign > 0 ? 1 : -1);
   }
 }
 

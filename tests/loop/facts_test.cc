@@ -1,5 +1,6 @@
 #include "mindahl/loop/facts.h"
 
+#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/measured.h"
@@ -204,8 +205,7 @@ TEST(MeasureFacts, RejectsInvalidRecordAndSign) {
 
 LoopFacts FactsOfPrepared(const Record& record) {
   const std::vector<RecordView> views = {record};
-  const PreparedRecords prepared = Prepare(views, {});
-  return MeasureFacts(prepared.records[0], prepared.force_sense);
+  return Prepare(views, {}).records[0].facts;
 }
 
 // Reference values are those of the measured records' README, read off the loops by others.

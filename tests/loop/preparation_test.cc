@@ -50,18 +50,6 @@ TEST(Preparation, OneMaskLeavesOutWhatWindowCyclesAndMasksDo) {
   EXPECT_EQ(prepared.counted(), size - left_out);
 }
 
-TEST(Preparation, RefusesALoadWindowThatHoldsNoSampleWithTheRangeOfTheLoad) {
-  const std::vector<Record> records = {Made()};
-  const auto message_of = [&](double lower, double upper) {
-    return MessageOf([&] { PrepareAll(records, {.load_window = Interval{lower, upper}}); });
-  };
-  EXPECT_EQ(message_of(10.5, 11.5),
-            "--select load=10.5:11.5 holds no sample: the normal load runs from 10 to 12 N");
-  EXPECT_THAT(message_of(13, 20), HasSubstr("holds no sample"));
-  EXPECT_THAT(message_of(1, 9), HasSubstr("holds no sample"));
-  EXPECT_GT(PrepareAll(records, {.load_window = Interval{1, 10}}).counted(), 0U);
-}
-
 /// Places of the samples that count.
 std::vector<std::size_t> Counting(const PreparedRecord& record) {
   std::vector<std::size_t> places;
@@ -98,11 +86,11 @@ std::string RefusalOf(const PreparationOptions& options) {
 
 TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
   EXPECT_EQ(RefusalOf({.cycles = CountRange{5, 6}}),
-            "cycles 5:6 contain nothing of record 1: it has 4 cycles that are begun, 3 complete");
+            "cycles 5:6 contain nothing of record 1, which has 4 of them");
   EXPECT_EQ(RefusalOf({.cycles = CountRange{0, 2}}),
             "--select cycles: '0:2' is empty: the first number must not be the larger");
   EXPECT_EQ(RefusalOf({.samples = CountRange{302, 400}}),
-            "samples 302:400 contain nothing of record 1: it has 301 samples");
+            "samples 302:400 contain nothing of record 1, which has 301 of them");
   EXPECT_EQ(RefusalOf({.samples = CountRange{7, 6}}),
             "--select samples: '7:6' is empty: the first number must not be the larger");
 }
@@ -113,7 +101,7 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
   EXPECT_EQ(PrepareAll({Made()}, {}).force_sense, 1);
   const PreparedRecords turned = PrepareAll({opposite}, {});
   EXPECT_EQ(turned.force_sense, -1);
-  EXPECT_GT(MeasureFacts(turned.records[0], turned.force_sense).energy_per_cycle, 0.0);
+  EXPECT_GT(turned.records[0].facts.energy_per_cycle, 0.0);
   EXPECT_EQ(PrepareAll({opposite}, {.force_sense = 1}).force_sense, 1);
   // Of several records, most.
   EXPECT_EQ(PrepareAll({opposite, Made(), opposite}, {}).force_sense, -1);
@@ -169,7 +157,7 @@ TEST(Preparation, ASpikeInDisplacementMakesNeitherReversalNorHistory) {
   // A straight way over it is off by the sine's curvature, (2π/100)²/2, at most.
   EXPECT_NEAR(one.displacement()[120], clean.displacement[120], 2e-3);
   EXPECT_EQ(one.record.displacement[120], spiked.displacement[120]) << "as measured";
-  EXPECT_NEAR(one.measures.amplitude, 1.0, 1e-12);
+  EXPECT_NEAR(one.facts.amplitude, 1.0, 1e-12);
 }
 
 TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
@@ -192,9 +180,9 @@ TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
   EXPECT_EQ(one.reversals.size(), 6U);
   EXPECT_EQ(prepared.force_sense, 1);
   constexpr double kBridged = 0.01;  // of a loop with lines over 5 % of its samples
-  const double energy = MeasureFacts(whole.records[0], 1).energy_per_cycle;
-  EXPECT_NEAR(MeasureFacts(one, 1).energy_per_cycle, energy, kBridged * energy);
-  EXPECT_NEAR(one.measures.peak_force, whole.records[0].measures.peak_force, kBridged);
+  const double energy = whole.records[0].facts.energy_per_cycle;
+  EXPECT_NEAR(one.facts.energy_per_cycle, energy, kBridged * energy);
+  EXPECT_NEAR(one.facts.peak_force, whole.records[0].facts.peak_force, kBridged);
 }
 
 TEST(Preparation, RefusesARecordThatIsEmptyOrNotFinite) {

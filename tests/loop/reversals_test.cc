@@ -1,6 +1,6 @@
 #include "mindahl/loop/reversals.h"
 
-#include "loop/strokes.h"
+#include "loop/excursions.h"
 #include "support/histories.h"
 #include "support/measured.h"
 #include "support/prelude.h"
@@ -10,7 +10,9 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-std::size_t CountGated(const History& history) { return ChooseReversalGate(history).count; }
+std::size_t CountGated(const History& history) {
+  return FindReversals(history, ChooseReversalGate(history).gate).size();
+}
 
 TEST(FindReversals, FindsTheFarthestSampleOfEachTurnBeyondTheGate) {
   struct Turns {
@@ -193,8 +195,10 @@ TEST(ChooseReversalGate, KeepsTheSmallCyclesOfANoisyDriveOfTwoAmplitudes) {
     const History clean = TwoAmplitudes(small, samples);
     ASSERT_EQ(ChooseReversalGate(clean).gate, 0.0);
     const double noise = small * testing::LogUniform(generator, 1e-4, 1e-2);
-    const ReversalGate choice = ChooseReversalGate(WithNoise(generator, clean, noise));
-    ASSERT_EQ(choice.count, FindReversals(clean, 0.0).size()) << small << ' ' << noise;
+    const History noisy = WithNoise(generator, clean, noise);
+    const ReversalGate choice = ChooseReversalGate(noisy);
+    ASSERT_EQ(FindReversals(noisy, choice.gate).size(), FindReversals(clean, 0.0).size())
+        << small << ' ' << noise;
     ASSERT_TRUE(choice.certain) << small << ' ' << noise;
   }
 }
@@ -224,7 +228,7 @@ TEST(ChooseReversalGate, SeesThroughStepsBackOfAGaugeOrIsNotSure) {
     const double depth = testing::LogUniform(generator, 0.005, 0.05);
     const History read = WithStepsBack(generator, WithNoise(generator, clean, 1e-4), depth, 100);
     const ReversalGate choice = ChooseReversalGate(read);
-    if (choice.count == FindReversals(clean, 0.0).size()) continue;
+    if (FindReversals(read, choice.gate).size() == FindReversals(clean, 0.0).size()) continue;
     ++miscounted;
     sure += choice.certain ? 1 : 0;
   }
@@ -270,7 +274,6 @@ TEST(MeasuredReversals, AreAsManyAsTheTestsWereRunWith) {
 /// Nineteen reversals, each so far [mm] from the one before.
 void ExpectNineteen(const History& position, double apart) {
   const ReversalGate choice = ChooseReversalGate(position);
-  EXPECT_EQ(choice.count, 19U);
   const Indices reversals = FindReversals(position, choice.gate);
   EXPECT_EQ(reversals.size(), 19U);
   for (std::size_t k = 1; k < reversals.size(); ++k) {
@@ -315,23 +318,30 @@ TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
     }
     const ReversalGate gate = ChooseReversalGate(displacement);
     EXPECT_GE(gate.gate, 1.5 * kCount);
-    EXPECT_EQ(gate.count, 4U) << record;
+    EXPECT_EQ(FindReversals(displacement, gate.gate).size(), 4U) << record;
   }
 }
 
 // ---
 // The staircase of the number of reversals over the gate.
 
-TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
+TEST(FindExcursions, GiveTheNumberOfReversalsUnderEveryGate) {
   Generator generator(1);
   for (int i = 0; i < 2000; ++i) {
     const History history = testing::RandomHistory(generator);
     const auto excursions = FindExcursions(history);
-    ASSERT_EQ(CountReversals(excursions, 0.0), FindReversals(history, 0.0).size());
+    const auto count = [&](double gate) {
+      std::size_t ends = 0;
+      for (const Excursion& excursion : excursions) {
+        if (excursion.range > gate) ends += excursion.reversals;
+      }
+      return ends == 0 ? 0 : ends - 1;  // one stroke is left, with a reversal at neither end
+    };
+    ASSERT_EQ(count(0.0), FindReversals(history, 0.0).size());
     for (const Excursion& excursion : excursions) {
       for (const double gate :
            {excursion.range * (1 - 1e-12), excursion.range, excursion.range * (1 + 1e-12)}) {
-        ASSERT_EQ(CountReversals(excursions, gate), FindReversals(history, gate).size())
+        ASSERT_EQ(count(gate), FindReversals(history, gate).size())
             << "history " << i << ", gate " << gate;
       }
     }
@@ -351,13 +361,6 @@ TEST(FindExcursions, AreClosedLoopsAndTheTravelFromEndToEnd) {
   EXPECT_EQ(excursions[2].range, 6.0);
   EXPECT_EQ(excursions[2].duration(), 3U);
   EXPECT_EQ(excursions[3].range, 12.0);
-}
-
-TEST(FindExcursions, AreNoneWhereNothingTurnsOrMoves) {
-  EXPECT_TRUE(FindExcursions(History{}).empty());
-  for (const History& still : {History{1}, {1, 2, 3}, {2, 2, 2}}) {
-    EXPECT_EQ(CountReversals(FindExcursions(still), 0.0), 0U);
-  }
 }
 
 }  // namespace

@@ -339,10 +339,10 @@ TEST(Answer, OfTooFewSamplesDeterminesNothing) {
 
 TEST(Answer, SaysEveryWarningOnce) {
   ReportInput input = MadeInput();
-  input.fit.findings = {{.code = "reversals_uncertain",
-                         .numbers = {{"count", 7.0}, {"other_count", 9.0}, {"other_gate", 1e-7}}},
-                        {.code = "load_followed", .numbers = {{"variation", 0.1}}}};
-  EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals, or 9 if"));
+  input.fit.findings = {
+      {.code = "reversals_uncertain", .numbers = {{"count", 7.0}, {"gate", 1e-7}}},
+      {.code = "load_followed", .numbers = {{"variation", 0.1}}}};
+  EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals, under a gate of 100 nm"));
   EXPECT_THAT(Answer(input), Not(HasSubstr("which the law follows")));
   EXPECT_THAT(Details(input), HasSubstr("which the law follows"));
 }

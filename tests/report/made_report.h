@@ -44,9 +44,9 @@ inline loop::Record MadeRecord(double amplitude, std::size_t samples = 9) {
 
 inline identification::RecordFit MadeRecordFit(const loop::Record& record, double amplitude) {
   identification::RecordFit fit;
-  fit.measures.amplitude = amplitude;
-  fit.measures.peak_force = 10.0;
-  fit.measures.cycles = 1;
+  fit.facts.amplitude = amplitude;
+  fit.facts.peak_force = 10.0;
+  fit.facts.complete_cycles = 1;
   fit.reversals = {record.size() / 2};
   for (std::size_t i = 0; i < record.size(); ++i) {
     fit.residual.push_back(0.125 * static_cast<double>(i));

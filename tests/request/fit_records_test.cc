@@ -227,7 +227,7 @@ TEST(TrimmedFit, HasSignGapAndScaleOfTheTestAndNamesTheRowsOfATravel) {
   }
   const report::Report report = ReportOf(record);
   EXPECT_EQ(report.fit.force_sense, 1);
-  EXPECT_NEAR(report.fit.records[0].measures.amplitude / kReach, 1, 0.001);
+  EXPECT_NEAR(report.fit.records[0].facts.amplitude / kReach, 1, 0.001);
   EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.01);
   EXPECT_NEAR(report.fit.law.tangential_stiffness / kLaw.tangential_stiffness, 1, 0.02);
   ASSERT_EQ(report.left_out.size(), 2U);

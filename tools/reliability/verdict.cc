@@ -114,10 +114,10 @@ std::string ResidualsText(const FitResult& fit) {
       "   {} samples, {} reversals (gate {:.2g} X), {}, {}; T* {:.3g} % of Tc, rms {:.3g}, "
       "largest {:.3g}, "
       "Durbin-Watson {:.2f}, {:.0f} effective; {:.0f} % repeatable\n",
-      fit.residuals.samples, record.reversals.size(), record.gate.gate / record.measures.amplitude,
+      fit.residuals.samples, record.reversals.size(), record.gate.gate / record.facts.amplitude,
       fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady",
       fit.converged ? "converged" : "NOT CONVERGED: " + fit.solver.message,
-      100 * record.measures.peak_force / fit.law.slip_force,
+      100 * record.facts.peak_force / fit.law.slip_force,
       100 * fit.residuals.rms / fit.law.slip_force,
       100 * fit.residuals.max_abs / fit.law.slip_force, fit.residuals.durbin_watson,
       fit.residuals.effective_samples, 100 * record.structure.repeatable_share);

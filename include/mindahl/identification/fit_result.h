@@ -9,7 +9,6 @@
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/loop/facts.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/models/branch_law.h"
@@ -86,7 +85,6 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 /// Holds the fit of one record, and how that was read. In a fit of the displacement the noise of
 /// its readings is that of the fit.
 struct RecordFit : loop::RecordReading {
-  loop::LoopFacts facts;  ///< cycle by cycle; from depth kErrors on
   models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mindahl/loop/disturbances.h"
+#include "mindahl/loop/facts.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
@@ -54,37 +55,23 @@ struct PreparationOptions {
   /// law is a bias.
   std::optional<double> displacement_noise{};
 
-  /// Samples under another load [N] do not count; they still make history.
+  // Samples that do not count still make history.
+
+  /// Samples under another load [N] do not count.
   std::optional<Interval> load_window{};
 
-  /// Samples of other cycles do not count; they still make history. The first cycle lasts from the
-  /// record's start to its second reversal, each other one two reversals longer, the last to the
-  /// record's end.
+  /// Samples of other cycles do not count. The first cycle lasts from the record's start to its
+  /// second reversal, each other one two reversals longer, the last to the record's end.
   std::optional<CountRange> cycles{};
 
-  /// Other samples do not count; they still make history.
+  /// Other samples do not count.
   std::optional<CountRange> samples{};
 
-  /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
-  /// make history.
+  /// Samples that do not count, one vector a record, each empty or one entry a sample.
   std::vector<std::vector<bool>> held_out{};
 
   /// DrawReadings() of the same records, for one of many fits of them; null: a fit draws its own.
   std::shared_ptr<const DrawnReadings> drawn{};
-};
-
-/// Holds what is measured on a record before any model is fitted.
-struct LoopMeasures {
-  /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
-  /// start and to its end count by their length, 0.02 cycles short of one is one.
-  std::size_t cycles = 0;
-  /// X [m]: half the mean range of the main swings, those at least 0.95 times as wide as the widest
-  double amplitude = 0.0;
-  /// T* [N]: half the distance between the greatest and least force of the main swings: the mean at
-  /// their ends, or, where the force peaks before it turns, the extreme of its mean over a
-  /// twentieth of a swing (median over the swings of a direction), so that neither noise nor a
-  /// spike makes it
-  double peak_force = 0.0;
 };
 
 /// Describes how a record was read.
@@ -92,10 +79,10 @@ struct RecordReading {
   ReversalGate gate;                   ///< [unit of the excitation]; `certain` where it was given
   GlitchCount glitches;                ///< glitches left out
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  LoopMeasures measures;
-  double displacement_noise = 0.0;    ///< [m]; 0 where readings are exact, and not smoothed
-  std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
-  std::size_t left_out = 0;           ///< samples that do not count
+  LoopFacts facts;                     ///< without its glitches, smoothed where it is noisy
+  double displacement_noise = 0.0;     ///< [m]; 0 where readings are exact, and not smoothed
+  std::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
+  std::size_t left_out = 0;            ///< samples that do not count
 };
 
 /// One record as every later stage sees it.
@@ -146,14 +133,11 @@ std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records
 /// @throws InvalidArgument naming the option, its value and the rule
 void Validate(const PreparationOptions& options);
 
-/// Finds glitches - spikes and dropouts, which do not count and make no history -,
-/// reversals, sign of force, smoothing and the mask of samples that count: what
-/// depends on no model.
+/// Finds what depends on no model: glitches, which do not count and make no history, reversals,
+/// facts, sign of force, smoothing and the mask of samples that count.
 /// @param records  not empty; their memory must outlive the result
-/// @throws InvalidArgument as Validate(), for records that break a rule, where a record has no
-/// normal
-///   load for a window, has no cycle or sample of those asked for, or nothing is left of one
-/// Nothing else is allocated unless a displacement is smoothed.
+/// @throws InvalidArgument as Validate(), for records that break a rule, where a record has no load
+///   for a window, has no cycle or sample of those asked for, or nothing is left of one
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options);
 
 }  // namespace mindahl::loop

@@ -77,29 +77,24 @@ class ReversalFinder {
 /// Cost: one pass.
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate);
 
-/// A gate, the reversals that it leaves, and whether another would have had as good a claim.
+/// A gate, and whether another would have had as good a claim.
 struct ReversalGate {
-  double gate = 0.0;            ///< [m]; 0 where nothing looks like noise
-  std::size_t count = 0;        ///< reversals under it, as FindReversals finds them
-  bool certain = true;          ///< no other plateau of the count competes
-  std::size_t other_count = 0;  ///< reversals under the competing gate; `count` where certain
-  double other_gate = 0.0;      ///< [m]; `gate` where certain
+  double gate = 0.0;    ///< [m]; 0 where nothing looks like noise
+  bool certain = true;  ///< no other plateau of the count competes
 };
 
 /// Returns the gate [m] that separates reversals of the drive from those made by noise, by an
 /// encoder's steps and by backward steps of a gauge.
 ///
-/// Each excursion, a pair of extremes with its range, vanishes from the count where the gate
-/// reaches its range: the count is a staircase that is known exactly. An excursion looks like noise
-/// where it is brief against the main strokes and either within the reach of the white noise, of
-/// which an encoder's steps q make q/√12,
+/// An excursion, a pair of extremes with its range, looks like noise where it is brief against the
+/// main strokes and either within the reach of the white noise, of which an encoder's steps q make
+/// q/√12,
 ///   1.25·2√(2 ln n) standard deviations,
-/// or made mostly of a jump between two samples. Of the plateaus of the count that nearly agree
-/// with these looks the widest in log(gate) is taken, never beyond a stroke that looks like the
-/// drive's; the gate lies in it, at most at twice the range below it. Where nothing looks like
-/// noise
-/// - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain where the
-/// plateau is narrow.
+/// or made mostly of a jump between two samples. Of the gaps between ranges that nearly agree with
+/// these looks the widest in log(gate) is taken, never beyond a stroke that looks like the drive's;
+/// the gate lies in it, at most at twice the range below it. Where nothing looks like noise (a
+/// clean record, nested loops, few samples a cycle) it is 0. It is uncertain where the gap is
+/// narrow.
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.

@@ -38,9 +38,7 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
       // Counted as the report does, after smoothing.
       append({.code = "reversals_uncertain",
               .numbers = {{"count", static_cast<double>(record.reversals.size())},
-                          {"gate", gate.gate},
-                          {"other_count", static_cast<double>(gate.other_count)},
-                          {"other_gate", gate.other_gate}}});
+                          {"gate", gate.gate}}});
     }
     if (record.glitches.total > 0) {
       append({.code = "glitches_left_out",
@@ -128,15 +126,11 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
     return findings;
   }
-  // Those of the report, which are of closed cycles where there are any.
   const loop::LoopFacts& facts = result.WidestRecord().facts;
-  const loop::LoopMeasures& measures = result.WidestRecord().measures;
-  findings.push_back(
-      {.code = "slip_force_bounded_below",
-       .parameters = {"slip_force"},
-       .numbers = {{"peak_force", facts.closed ? facts.peak_force : measures.peak_force},
-                   {"amplitude", facts.closed ? facts.amplitude : measures.amplitude}},
-       .kind = loop::Slides(facts) ? "slides" : ""});
+  findings.push_back({.code = "slip_force_bounded_below",
+                      .parameters = {"slip_force"},
+                      .numbers = {{"peak_force", facts.peak_force}, {"amplitude", facts.amplitude}},
+                      .kind = loop::Slides(facts) ? "slides" : ""});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
     findings.push_back(
         {.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
@@ -292,7 +286,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
         result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1));
     const bool is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
     const models::BranchLaw law = result.LawOf(result.records[r]);
-    const double amplitude = ContactAmplitude(result, law, result.records[r].measures.amplitude);
+    const double amplitude = ContactAmplitude(result, law, result.records[r].facts.amplitude);
     const double peak_force = models::SteadyPeakForce(*result.model, law, amplitude);
     if (!is_known || peak_force >= (1 - thresholds.never_slips) * law.slip_force) continue;
     return Finding{.code = "asymmetry_not_identifiable", .parameters = {"asymmetry"}};

@@ -149,7 +149,7 @@ double CarriedForce(const Problem& problem, const FitResult& result) {
   std::vector<double> measured = widest.fitted_force;
   for (std::size_t i = 0; i < measured.size(); ++i) measured[i] -= widest.residual[i];
   const double white = loop::EstimateDisplacementNoise(measured);
-  const double carried = std::max((high - low) / 2 - error, widest.measures.peak_force - white);
+  const double carried = std::max((high - low) / 2 - error, widest.facts.peak_force - white);
   return std::min(peak_force, carried / widest.load_ratio);
 }
 

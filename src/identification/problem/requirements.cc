@@ -64,7 +64,7 @@ double StiffnessOfLoop(const loop::PreparedRecord& record, double sense, double 
     const std::size_t begin = record.reversals[k];
     const std::size_t end = record.reversals[k + 1];
     const double stroke = displacement[end] - displacement[begin];
-    if (!(std::abs(stroke) >= main_stroke * 2 * record.measures.amplitude)) continue;
+    if (!(std::abs(stroke) >= main_stroke * 2 * record.facts.amplitude)) continue;
     std::size_t chord = 0;
     for (std::size_t i = begin + 1; i <= end && chord < kChords; ++i) {
       const double share = (displacement[i] - displacement[begin]) / stroke;
