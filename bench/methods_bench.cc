@@ -1,5 +1,5 @@
 // Cost of every method from displacement to force, per sample of 50 cycles with gross slip, at a
-// representative resolution; of the simplified laws; and beside them the floor: reading a
+// representative resolution; and beside them the floor: reading a
 // displacement and writing a force (memory), and a square root and a division (the least of
 // Mindlin's law).
 //   cmake --preset release && cmake --build --preset release && build/release/bench/methods_bench
@@ -14,7 +14,6 @@
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/simplified_law.h"
 
 namespace {
 
@@ -73,14 +72,6 @@ void RegisterMethod(const Method& method, const FrictionModel& model, std::size_
 [[maybe_unused]] const int kRegistered = [] {
   benchmark::RegisterBenchmark("floor/memory", FloorMemory);
   benchmark::RegisterBenchmark("floor/square_root_and_division", FloorSquareRoot);
-  for (const SimplifiedLaw& limit : SimplifiedLaws()) {
-    benchmark::RegisterBenchmark(
-        ("simplified/" + std::string(limit.name)).c_str(), [&limit](benchmark::State& state) {
-          Measure(state, [&](const std::vector<double>& x, std::vector<double>& force) {
-            limit.evaluate_force(kLaw, x, {}, force);
-          });
-        });
-  }
   for (const Method& method : Methods()) {
     for (const std::string_view model : {"mindlin", "dahl"}) {
       const FrictionModel& served = *FindFrictionModel(model);

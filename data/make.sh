@@ -69,7 +69,7 @@ BEGIN {
 
 # A strain-wave drive of a robot: friction in proportion to the torque that it carries, which changes
 # its sign, and different in the two directions; knee 1.2 mrad, 3 N m under the mean of 21.8 N m. The state z of
-# Dahl's law, dz = (1 - sgn(dx) z) dx/h, has the torque 3 (|N| z - 0.2 N z^2)/21.7868; a spring that is nearly none
+# Dahl's law, dz = (1 - sgn(dx) z) dx/h, has the torque 3 (|N| z - 0.2 N z^2)/21.7868; a stiffness that is nearly none
 # gives the noise.
 awk 'BEGIN {
   print "angle [rad],torque [N m]"
@@ -78,7 +78,7 @@ awk 'BEGIN {
     printf "%.9e,%.6f\n", 3.6e-3 * sin(phase), 12 + 28 * cos(0.4 * phase)
   }
 }' >"$motion"
-"$mindahl" simulate --model spring --sigma 1e-9 --slip-force 3 --path "$motion" --noise-force 0.015 --seed 17 |
+"$mindahl" simulate --model jenkins --sigma 1e-9 --slip-force 3 --path "$motion" --noise-force 0.015 --seed 17 |
   paste -d, - "$motion" | awk -F, -v OFS=, '
     NR == 1 { print "time [s]", "angle [rad]", "friction torque [N m]", "torque [N m]"; next }
     {

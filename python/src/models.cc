@@ -65,24 +65,24 @@ void SimulateJoint(const FrictionModel& model, const BranchLaw& law, double asym
 py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
                              std::optional<double> alpha, const std::string& model_name,
                              std::optional<double> rig_stiffness, double asymmetry, double gate) {
-  const models::SimplifiedLaw* const simple = models::FindSimplifiedLaw(model_name);
-  const FrictionModel& model = RequireModel(simple != nullptr ? "dahl" : model_name);
+  const bool is_simplified = model_name == models::kSimplifiedDahl;
+  const FrictionModel& model = RequireModel(is_simplified ? "dahl" : model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
   const std::span<const double> samples = SpanOf(displacement);
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
-  if (model.memory == models::Memory::kNone && simple == nullptr && asymmetry != 0) {
+  if (model.memory == models::Memory::kNone && !is_simplified && asymmetry != 0) {
     if (rig_stiffness) throw InputError("--rig-stiffness is refused beside an asymmetry");
     SimulateJoint(model, law, asymmetry, samples, written);
     return force;
   }
-  if (simple != nullptr) {
+  if (is_simplified) {
     if (rig_stiffness || asymmetry != 0) {
       throw InputError(fmt::format(
           "--model {} takes no rig and no asymmetry: leave these out, or use another model",
           model_name));
     }
-    simple->evaluate_force(law, samples, {}, written);
+    models::EvaluateSimplifiedDahl(law, samples, {}, written);
     return force;
   }
   const py::gil_scoped_release others_may_run;

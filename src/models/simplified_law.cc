@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -15,20 +14,13 @@
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::models {
-namespace {
-
-void RequireLawAndSamples(const BranchLaw& law, std::span<const double> displacement,
-                          std::span<double> force) {
+void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displacement,
+                            std::span<const double> envelope, std::span<double> force) {
   Validate(law);
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     RequireFinite(fmt::format("displacement [m] of sample {}", i), displacement[i]);
   }
-}
-
-void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displacement,
-                            std::span<const double> envelope, std::span<double> force) {
-  RequireLawAndSamples(law, displacement, force);
   if (displacement.empty()) return;
   if (envelope.empty()) {
     const auto [lowest, highest] = ExtremesOf(displacement);
@@ -48,46 +40,6 @@ void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displa
     force[i] = present;
     last = displacement[i];
   }
-}
-
-void EvaluateSpring(const BranchLaw& law, std::span<const double> displacement,
-                    std::span<const double> /*envelope*/, std::span<double> force) {
-  RequireLawAndSamples(law, displacement, force);
-  bool finite = true;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    force[i] = law.tangential_stiffness * displacement[i];
-    finite = finite && std::isfinite(force[i]);
-  }
-  if (!finite) throw InvalidArgument("the force of a spring exceeds the largest double");
-}
-
-void EvaluateCoulomb(const BranchLaw& law, std::span<const double> displacement,
-                     std::span<const double> /*envelope*/, std::span<double> force) {
-  RequireLawAndSamples(law, displacement, force);
-  double last = 0.0;
-  double present = 0.0;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (displacement[i] > last) present = law.slip_force;
-    if (displacement[i] < last) present = -law.slip_force;
-    force[i] = present;
-    last = displacement[i];
-  }
-}
-
-constexpr std::array kSimplifiedLaws{
-    SimplifiedLaw{"simplified-dahl", "Simplified-Dahl: the steady branch without a virgin phase",
-                  EvaluateSimplifiedDahl},
-    SimplifiedLaw{"spring", "linear spring: the contact sticks", EvaluateSpring},
-    SimplifiedLaw{"coulomb", "Coulomb friction: the contact slides", EvaluateCoulomb},
-};
-
-}  // namespace
-
-std::span<const SimplifiedLaw> SimplifiedLaws() { return kSimplifiedLaws; }
-
-const SimplifiedLaw* FindSimplifiedLaw(std::string_view name) {
-  const auto law = std::ranges::find(kSimplifiedLaws, name, &SimplifiedLaw::name);
-  return law == kSimplifiedLaws.end() ? nullptr : &*law;
 }
 
 double SimplifiedDahlStep(const BranchLaw& law, double peak, double force, double step) {

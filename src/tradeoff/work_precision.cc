@@ -40,17 +40,14 @@ double Work(std::span<const double> displacement, std::span<const double> force)
 }  // namespace
 
 methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
-  if (const models::SimplifiedLaw* simple = models::FindSimplifiedLaw(approximation.model)) {
+  if (approximation.model == models::kSimplifiedDahl) {
     Validate(law);
-    return [simple, law](const Drive& drive, std::span<double> force) {
-      double cost = 0.0;
-      if (simple->name == "simplified-dahl") {
-        // It is Dahl's own law with other parameters, and under an envelope a branch each step.
-        constexpr double kStep = 139.3;  // [ns]
-        cost = drive.envelope.empty() ? Prepare({"dahl", "exact"}, law)(drive, force)
-                                      : kStep * static_cast<double>(force.size());
-      }
-      simple->evaluate_force(law, drive.displacement, drive.envelope, force);
+    return [law](const Drive& drive, std::span<double> force) {
+      // It is Dahl's own law with other parameters, and under an envelope a branch each step.
+      constexpr double kStep = 139.3;  // [ns]
+      const double cost = drive.envelope.empty() ? Prepare({"dahl", "exact"}, law)(drive, force)
+                                                 : kStep * static_cast<double>(force.size());
+      models::EvaluateSimplifiedDahl(law, drive.displacement, drive.envelope, force);
       return cost;
     };
   }
@@ -66,7 +63,7 @@ methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& 
 }
 
 std::vector<Approximation> AllApproximations() {
-  std::vector<Approximation> all = {{"spring", ""}, {"coulomb", ""}};
+  std::vector<Approximation> all;
   for (const char* model : {"jenkins", "simplified-dahl", "dahl", kExactModel}) {
     all.push_back({model, "exact"});
   }

@@ -88,15 +88,6 @@ TEST_F(Simulate, ComesNearTheClosedFormByEveryMethod) {
   }
 }
 
-TEST_F(Simulate, KnowsSpringAndCoulombAsModels) {
-  const std::string command = kUnit + "--amplitude 1.2 --samples-per-cycle 4 --model ";
-  const std::vector<double> spring = Forces(command + "spring");
-  ASSERT_THAT(spring, SizeIs(5));
-  EXPECT_EQ(spring[1], 1.2);
-  EXPECT_EQ(spring[3], -1.2);
-  EXPECT_THAT(Forces(command + "coulomb"), ElementsAre(0, 1, -1, -1, 1));
-}
-
 TEST(Contact, OfMaterialsAndRadiiFollowsHertzAndMindlin) {
   const json contact = JsonOf(
       "contact --friction 0.4 --normal-load 25 --youngs-modulus-1 210e9 --poisson-1 0.3 "
@@ -146,7 +137,7 @@ TEST_F(Tradeoff, WritesTableCsvAndPlot) {
   const std::string text =
       Done("tradeoff --csv " + Path("points.csv") + " --plot " + Path("points.svg")).out;
   EXPECT_THAT(text, HasSubstr("\n  simplified-dahl  exact "));
-  EXPECT_THAT(Lines(FileContent(Path("points.csv"))), SizeIs(1 + 3 * (6 + 15)));
+  EXPECT_THAT(Lines(FileContent(Path("points.csv"))), SizeIs(1 + 3 * (4 + 15)));
   EXPECT_THAT(FileContent(Path("points.svg")), HasSubstr("<svg"));
 }
 
@@ -160,8 +151,8 @@ TEST_F(Tradeoff, NamesTheCheapestAlongAPath) {
     return JsonOf("tradeoff --sigma 1 --slip-force 1 --tolerance 1% --path " +
                   Write("path.csv", path))["excitations"][0]["cheapest"];
   };
-  EXPECT_EQ(cheapest("1e-3")["model"], "mindlin-dahl");  // a spring would lose the energy
-  EXPECT_EQ(cheapest("1e6")["model"], "coulomb");
+  EXPECT_EQ(cheapest("1e-3")["model"], "mindlin-dahl");  // Jenkins' would lose the energy
+  EXPECT_EQ(cheapest("1e6")["model"], "jenkins");
   EXPECT_EQ(cheapest("0.8")["method"], "exact");
 }
 

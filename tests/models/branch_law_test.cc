@@ -63,71 +63,39 @@ TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
 
 constexpr BranchLaw kLaw{.tangential_stiffness = 4.0, .slip_force = 3.0};
 
-std::vector<double> Respond(std::string_view name, const std::vector<double>& displacement) {
+std::vector<double> Simplified(const std::vector<double>& displacement,
+                               const std::vector<double>& envelope = {}) {
   std::vector<double> force(displacement.size());
-  FindSimplifiedLaw(name)->evaluate_force(kLaw, displacement, {}, force);
+  EvaluateSimplifiedDahl(kLaw, displacement, envelope, force);
   return force;
-}
-
-TEST(SimplifiedLaw, SpringIsProportionalAndNotBounded) {
-  EXPECT_EQ(Respond("spring", {0, 0.5, -0.25, 100}), (std::vector<double>{0, 2, -1, 400}));
-}
-
-TEST(SimplifiedLaw, CoulombOpposesTheMotionAndHoldsAtRest) {
-  EXPECT_EQ(Respond("coulomb", {0, 0, 1e-300, 1e-300, 0, 0, -1, -0.5}),
-            (std::vector<double>{0, 0, 3, 3, -3, -3, -3, 3}));
-  // The travel from the reference position to the first sample is a motion.
-  EXPECT_EQ(Respond("coulomb", {-1, -1}), (std::vector<double>{-3, -3}));
 }
 
 TEST(SimplifiedLaw, FollowsAnEnvelopeAsItFollowsTheLargestDisplacement) {
   // Eq. 27 step by step and by the closed form of a branch: equal to a rounding a step.
   const std::vector<double> history = {0.2, 0.7, 1.1, 0.4, -0.9, -1.1, 0.1, 0.8, 1.1, -0.3};
   const std::vector<double> constant(history.size(), 1.1);
-  std::vector<double> stepped(history.size());
-  FindSimplifiedLaw("simplified-dahl")->evaluate_force(kLaw, history, constant, stepped);
-  const std::vector<double> whole = Respond("simplified-dahl", history);
+  const std::vector<double> stepped = Simplified(history, constant);
+  const std::vector<double> whole = Simplified(history);
   for (std::size_t i = 0; i < history.size(); ++i) {
     EXPECT_NEAR(stepped[i], whole[i], 1e-14 * kLaw.slip_force) << i;
   }
   std::vector<double> growing = constant;
   for (double& amplitude : growing) amplitude *= 2;
-  FindSimplifiedLaw("simplified-dahl")->evaluate_force(kLaw, history, growing, stepped);
-  EXPECT_LT(stepped[0], whole[0]);  // the branch of a wider loop is softer at T = 0
-}
-
-TEST(SimplifiedLaw, IsFoundByItsNameOnly) {
-  ASSERT_EQ(SimplifiedLaws().size(), 3U);
-  for (const SimplifiedLaw& law : SimplifiedLaws()) EXPECT_EQ(FindSimplifiedLaw(law.name), &law);
-  EXPECT_EQ(FindSimplifiedLaw("Spring"), nullptr);
-  EXPECT_EQ(FindSimplifiedLaw(""), nullptr);
+  EXPECT_LT(Simplified(history, growing)[0],
+            whole[0]);  // the branch of a wider loop is softer at T = 0
 }
 
 TEST(SimplifiedLaw, RefusesWhatItCannotServe) {
   std::vector<double> force(2);
   const std::vector<double> three = {0, 1, 2};
   const std::vector<double> not_finite = {0, std::numeric_limits<double>::infinity()};
-  for (const SimplifiedLaw& law : SimplifiedLaws()) {
-    EXPECT_THAT(MessageOf([&] { law.evaluate_force(kLaw, three, {}, force); }),
-                HasSubstr("displacement"));
-    EXPECT_THAT(MessageOf([&] { law.evaluate_force(kLaw, not_finite, {}, force); }),
-                HasSubstr("displacement [m] of sample 1"));
-    EXPECT_THAT(MessageOf([&] {
-                  law.evaluate_force({.tangential_stiffness = 1, .slip_force = -1}, force, {},
-                                     force);
-                }),
-                HasSubstr("slip force [N]"));
-  }
-  const std::vector<double> far = {0, 1e308};
-  const std::vector<double> far_and_back = {1e308, 0};
-  EXPECT_THAT(MessageOf([&] {
-                FindSimplifiedLaw("spring")->evaluate_force(kLaw, far_and_back, {}, force);
-              }),
-              HasSubstr("exceeds the largest double"));
-  EXPECT_THAT(MessageOf([&] { FindSimplifiedLaw("spring")->evaluate_force(kLaw, far, {}, force); }),
-              HasSubstr("exceeds the largest double"));
-  EXPECT_EQ(MessageOf([&] { FindSimplifiedLaw("coulomb")->evaluate_force(kLaw, far, {}, force); }),
-            "");
+  const auto refusal = [&](const BranchLaw& law, const std::vector<double>& displacement) {
+    return MessageOf([&] { EvaluateSimplifiedDahl(law, displacement, {}, force); });
+  };
+  EXPECT_THAT(refusal(kLaw, three), HasSubstr("displacement"));
+  EXPECT_THAT(refusal(kLaw, not_finite), HasSubstr("displacement [m] of sample 1"));
+  EXPECT_THAT(refusal({.tangential_stiffness = 1, .slip_force = -1}, {0, 1}),
+              HasSubstr("slip force [N]"));
 }
 
 // ---

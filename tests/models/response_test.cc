@@ -61,7 +61,7 @@ std::vector<double> ErrorsByCycle(const History& history, const std::vector<doub
 std::vector<double> SimplifiedDahlErrors(double lambda) {
   const History history = PaperSine(lambda, kCycles, kPerCycle);
   std::vector<double> force(history.size());
-  FindSimplifiedLaw("simplified-dahl")->evaluate_force(kPaperLaw, history, {}, force);
+  EvaluateSimplifiedDahl(kPaperLaw, history, {}, force);
   return ErrorsByCycle(history, force);
 }
 

@@ -69,10 +69,6 @@ TEST(Approximation, EvaluatesAsAskedFor) {
   std::vector<double> force(3);
   Prepare({"jenkins", "exact"}, {4, 0.6, 3})({.displacement = drive}, force);
   EXPECT_THAT(force, ElementsAre(2, 3, 1));
-  Prepare({"spring", ""}, {4, 0.6, 3})({.displacement = drive}, force);
-  EXPECT_THAT(force, ElementsAre(2, 4, 2));
-  Prepare({"coulomb", ""}, {4, 0.6, 3})({.displacement = drive}, force);
-  EXPECT_THAT(force, ElementsAre(3, 3, -3));
 }
 
 TEST(Approximation, RefusesUnknownNames) {
@@ -82,15 +78,14 @@ TEST(Approximation, RefusesUnknownNames) {
 }
 
 TEST(AllApproximations, NameTheModelsFromTheSimplestToTheExactOneThenItsMethods) {
-  const std::vector<std::string> models = {"spring",          "coulomb", "jenkins",
-                                           "simplified-dahl", "dahl",    "mindlin-dahl"};
+  const std::vector<std::string> models = {"jenkins", "simplified-dahl", "dahl", "mindlin-dahl"};
   const std::vector<Approximation> all = AllApproximations();
   std::set<std::string> methods;
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].model, models[std::min(i, models.size() - 1)]);
     methods.insert(all[i].method);
   }
-  EXPECT_EQ(methods.size(), Methods().size() + 1);  // and "" of the limit laws
+  EXPECT_EQ(methods.size(), Methods().size());
 }
 
 }  // namespace

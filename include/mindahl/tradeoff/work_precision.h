@@ -13,19 +13,19 @@ namespace mindahl::tradeoff {
 
 /// A way to compute the force of a contact along a drive: a model, and a method that evaluates it.
 struct Approximation {
-  std::string model;   ///< a name of FrictionModels() or SimplifiedLaws()
-  std::string method;  ///< a name of Methods(); "" for a spring and for Coulomb's law
+  std::string model;   ///< a name of FrictionModels(), or "simplified-dahl"
+  std::string method;  ///< a name of Methods()
   methods::Resolution resolution = {};
 };
 
 /// Returns the approximation made ready for a contact, with the model's α where it prescribes one;
-/// what it costs is as of methods/method.h, of a limit law 0.
+/// what it costs is as of methods/method.h.
 /// @throws InvalidArgument for an unknown model or method, or as Prepare() of methods/method.h
 methods::Evaluator Prepare(const Approximation& approximation, const models::BranchLaw& law);
 
-/// Returns the models a contact may be simplified to, simplest first, each in closed form (spring,
-/// coulomb, jenkins, simplified-dahl, dahl, and its own, mindlin-dahl), then that one by every
-/// other method, from coarse to fine.
+/// Returns the models a contact may be simplified to, simplest first, each in closed form
+/// (jenkins, simplified-dahl, dahl, and its own, mindlin-dahl), then that one by every other
+/// method, from coarse to fine.
 std::vector<Approximation> AllApproximations();
 
 /// Errors of a response, relative [–].
