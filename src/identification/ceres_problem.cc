@@ -47,13 +47,7 @@ CeresProblem::State::State(std::span<const loop::RecordView> records, FitOptions
   AddColumns(options, prepared, /*with_others=*/false, data);
   std::vector<models::InitialState> states;
   states.reserve(data.records.size());
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    states.push_back(fit.records[r].initial_state);
-    // Records whose noise differs weigh as in the fit.
-    const double own = fit.records[r].response_noise;
-    if (own == fit.ResponseNoise() || !(own > 0)) continue;
-    for (double& weight : data.records[r].root_weight) weight *= fit.ResponseNoise() / own;
-  }
+  for (const RecordFit& record : fit.records) states.push_back(record.initial_state);
   problem = Problem{&data, options.model, states, Parameters(data, options, states)};
   for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
     const Parameter& parameter = problem->parameters[p];

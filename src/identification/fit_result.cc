@@ -13,28 +13,6 @@ namespace {
 
 constexpr double kOpen = std::numeric_limits<double>::infinity();
 
-/// Returns the distance from the value to an end of its interval [unit of the value], along the
-/// logarithm of a positive parameter: infinite where the end is open.
-double WayTo(const ParameterEstimate& estimate, const std::optional<double>& end) {
-  if (!end) return kOpen;
-  const Term* term = FindTerm(TermNameOf(estimate.name));
-  if (term == nullptr || !term->positive) return std::abs(*end - estimate.value);
-  return *end > 0 ? estimate.value * std::abs(std::log(*end / estimate.value)) : kOpen;
-}
-
-/// Returns the error that an interval's half width stands for; the standard error itself where the
-/// interval is that of the parabola, but for rounding.
-double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_of_freedom,
-                  double confidence) {
-  if (estimate.status == ParameterStatus::kFixed) return 0.0;
-  const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
-  if (!has_error || !std::isfinite(way)) return kOpen;
-  constexpr double kRounding = 1e-9;
-  const double error = way / StudentQuantile(degrees_of_freedom, confidence);
-  const double standard = estimate.standard_error.value_or(0.0);
-  return error > standard * (1 + kRounding) ? error : standard;
-}
-
 }  // namespace
 
 const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& parameters,
@@ -48,11 +26,6 @@ const Finding* FitResult::FindFinding(FindingCode code) const {
     return std::string_view(finding.code) == std::string_view(code);
   });
   return found == findings.end() ? nullptr : &*found;
-}
-
-bool FitResult::has_mixed_states() const {
-  return std::ranges::any_of(
-      records, [&](const RecordFit& record) { return record.initial_state != initial_state; });
 }
 
 const RecordFit& FitResult::WidestRecord() const {
@@ -112,13 +85,23 @@ double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, doub
 }
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
-  const double way = std::max(WayTo(estimate, estimate.lower95), WayTo(estimate, estimate.upper95));
-  return ErrorOfWay(estimate, way, ErrorDegreesOfFreedom(), confidence);
+  return std::max(ErrorTowards(estimate, -kOpen), ErrorTowards(estimate, kOpen));
 }
 
 double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
+  if (estimate.status == ParameterStatus::kFixed) return 0.0;
   const std::optional<double>& end = value < estimate.value ? estimate.lower95 : estimate.upper95;
-  return ErrorOfWay(estimate, WayTo(estimate, end), ErrorDegreesOfFreedom(), confidence);
+  const Term* term = FindTerm(TermNameOf(estimate.name));
+  const bool is_positive = term != nullptr && term->positive;
+  const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
+  if (!has_error || !end || (is_positive && !(*end > 0))) return kOpen;
+  const double way = is_positive ? estimate.value * std::abs(std::log(*end / estimate.value))
+                                 : std::abs(*end - estimate.value);
+  const double error = way / StudentQuantile(ErrorDegreesOfFreedom(), confidence);
+  // The standard error itself where the interval is that of the parabola, but for rounding.
+  constexpr double kRounding = 1e-9;
+  const double standard = estimate.standard_error.value_or(0.0);
+  return error > standard * (1 + kRounding) ? error : standard;
 }
 
 }  // namespace mindahl::identification

@@ -47,7 +47,8 @@ double WeightedRms(const ScaledRecords& data, std::span<const double> residuals)
   return std::sqrt(squares / count) * std::exp(-log_weights / count);
 }
 
-/// The fitted response and residuals as the files have them, of every sample, and their rms.
+/// Fills the fitted response and the residuals as the files have them, of every sample, and their
+/// rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
@@ -55,53 +56,38 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   attempt.solver.response.Bind(problem);
   Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
+  const bool is_forced = data.is_forced();
+  const double unit = is_forced ? data.length : data.sense * data.force;
   double squares = 0.0;
-  double logarithms = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const RecordView& view = attempt.prepared.records[r].record;
     RecordFit& fit = result.records[r];
-    const bool is_forced = data.is_forced();
-    const std::span<const double> measured = is_forced ? view.displacement : view.force;
-    const double unit = is_forced ? data.length : data.sense * data.force;
     std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
     if (is_forced) fit.fitted_force.assign(view.force.begin(), view.force.end());
-    fit.residual.resize(measured.size());
-    fitted.resize(measured.size());
-    double own_squares = 0.0;
-    std::size_t sample = 0;
     for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      if (!record.inserted.empty() && record.inserted[i] != 0) continue;
       // The difference in units of the data: offsets of the file would cost its digits.
       const double residual = unit * residuals[k];
-      fit.residual[sample] = residual;
-      fitted[sample] = measured[sample] + residual;
-      if (record.counts[i] != 0) own_squares += residual * residual;
-      ++sample;
+      fitted.push_back((is_forced ? view.displacement : view.force)[i] + residual);
+      fit.residual.push_back(residual);
+      if (record.counts[i] != 0) squares += residual * residual;
     }
-    const auto own = static_cast<double>(CountedSamplesOf(record));
-    if (own > 0) logarithms += own * std::log(own_squares / own) / 2;
-    squares += own_squares;
   }
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
   const bool is_weighted = attempt.drawn != nullptr && attempt.options.loss == Loss::kNone;
-  result.likelihood_rms = is_weighted ? data.response_unit() * WeightedRms(data, residuals)
-                                      : std::exp(logarithms / static_cast<double>(data.counted));
+  result.likelihood_rms =
+      is_weighted ? data.response_unit() * WeightedRms(data, residuals) : result.rms;
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const ScaledRecords& data = attempt.data;
-  const Noise& noise = solved.noise;
-  result.records.resize(attempt.prepared.records.size());
-  for (std::size_t r = 0; r < result.records.size(); ++r) {
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
-    RecordFit& fit = result.records[r];
+    RecordFit& fit = result.records.emplace_back();
     static_cast<loop::RecordReading&>(fit) = prepared;
     fit.initial_state = solved.best.problem.states[r];
-    fit.response_noise =
-        (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
-    if (data.is_forced()) fit.displacement_noise = noise.force * data.length;
+    if (data.is_forced()) fit.displacement_noise = solved.noise.force * data.length;
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;
     fit.load_varies = !data.records[r].load_ratio.empty();

@@ -31,6 +31,8 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
                   std::span<const double> residual, Noise& noise, FitResult& result) {
   if (!LeavesOnlyRounding(problem, solution.sum_of_squares)) {
     noise.autocorrelation = EstimateAutocorrelation(problem.data->records, residual);
+    const bool any_differs = problem.data->records.size() > 1 && !noise.is_known;
+    if (any_differs) noise.of_records = VariancesOfRecords(*problem.data, residual);
   }
   double widening = 1.0;
   std::vector<std::span<const double>> measured;

@@ -4,24 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
-#include "identification/problem/moved_samples.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
+#include "identification/solve/search.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
-#include "models/scaled_branches.h"
 
 namespace mindahl::identification {
 namespace {
@@ -54,26 +51,19 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
   return record;
 }
 
-/// θ of what is expected; terms that are fitted in addition are expected to be nothing.
-Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
-  Solution solution;
-  solution.converged = true;
-  const auto& [stiffness, shape_exponent, slip_force] = expected.law;
-  const std::array of_contact = {stiffness, shape_exponent, slip_force, expected.rig.stiffness};
-  static_assert(kRig + 1 == std::tuple_size_v<decltype(of_contact)>);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const Parameter& parameter = parameters[p];
-    double theta = parameter.theta;
-    if (p < of_contact.size() && !parameter.absent) {
-      theta = parameter.ToTheta(of_contact[p]);
-    } else if (!parameter.fixed && !parameter.term->positive) {
-      theta = parameter.ToTheta(0.0);
-    }
-    solution.theta.push_back(theta);
-    const bool is_free = !parameter.fixed && !parameter.absent;
-    solution.side.push_back(is_free ? SideOf(parameter, theta) : BoundSide::kInside);
-  }
-  return solution;
+/// Returns the options of a fit of the loop, from the values that are expected.
+FitOptions OptionsOf(const Expectation& expected, const Protocol& protocol) {
+  FitOptions options;
+  options.initial_states = {protocol.initial_state};
+  options.force_noise = expected.force_noise;
+  options.preparation.force_sense = 1;
+  options.preparation.displacement_noise = expected.displacement_noise;
+  options.start = {{"sigma", expected.law.tangential_stiffness},
+                   {"alpha", expected.law.shape_exponent},
+                   {"slip_force", expected.law.slip_force},
+                   {"displacement_offset", 0.0}};
+  if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  return options;
 }
 
 }  // namespace
@@ -81,32 +71,28 @@ Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   RequirePlan(expected, protocol);
   const loop::Record record = LoopOf(expected, protocol);
-  FitOptions options;
-  options.initial_states = {protocol.initial_state};
-  options.force_noise = expected.force_noise;
-  options.preparation.force_sense = 1;
-  options.preparation.displacement_noise = expected.displacement_noise;
-  if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  const FitOptions options = OptionsOf(expected, protocol);
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
-  const Problem problem{&data, options.model, options.initial_states,
-                        Parameters(data, options, options.initial_states)};
-  Solution solution = SolutionAt(expected, problem.parameters);
+  Candidate candidate(data, options, options.initial_states);
+  const Problem& problem = candidate.problem;
+  Solution& solution = candidate.solution;
+  const std::vector<double> theta = GivenStart(problem.parameters, options)->theta;
+  solution.theta = theta;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;
-  Noise noise;
-  if (drawn) {
-    const SolverOptions stay{.max_iterations = 1};
-    const std::vector<double> theta = solution.theta;
-    FitWithWeights(problem, data, options, drawn.get(), solver, stay, solution, noise);
-    solution.theta = theta;
-  } else {
-    noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
+  Noise noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
+  if (drawn) FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
+  solution.theta = theta;
+  solution.converged = true;
+  solution.side.assign(theta.size(), BoundSide::kInside);
+  for (const std::size_t p : problem.parameters.free()) {
+    solution.side[p] = SideOf(problem.parameters[p], theta[p]);
   }
   const Estimates estimates(
       problem, solution, noise, WeightedForceErrors(drawn.get(), problem, solution), options,
-      LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free()));
+      LinearizeAt(problem, theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
   for (const double force : record.force) {

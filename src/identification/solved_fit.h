@@ -12,7 +12,6 @@
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
-#include "identification/solve/turning_points.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
@@ -38,16 +37,12 @@ struct SolvedFit {
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
   /// Holds the contact of the other initial state, where it is nearly as likely.
   std::optional<Rival> other_state = {};
-  /// The records that `best` is a problem of, where turning points were put in.
-  std::optional<TurningPointFit> turned = {};
 
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
-/// several records also some as virgin and some as steady, where all as one does not fit. Samples
-/// are weighted where the displacement is inexact, the loss is robust or records differ in their
-/// noise, and turning points put in where the record is sampled so coarsely that it misses them.
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers. Samples
+/// are weighted where the displacement is inexact or the loss is robust.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
 

@@ -260,7 +260,7 @@ Json DocumentOf(const Report& report) {
         {"reversals", reversals},
         {"left_out", LeftOutJson(report)}}},
       {"model", fit.model->name},
-      {"initial_state", fit.has_mixed_states() ? "mixed" : Name(fit.initial_state)},
+      {"initial_state", Name(fit.initial_state)},
       {"parameters", Parameters(report)},
       {"correlation", Correlations(report)},
       {"residuals",

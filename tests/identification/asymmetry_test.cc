@@ -146,29 +146,5 @@ TEST(Asymmetry, IsWhatASymmetricFitOfAVirginLoopLooksFor) {
   EXPECT_TRUE(Covers(*fit.Find("asymmetry"), 0.25));
 }
 
-TEST(Asymmetry, IsRecoveredWhereTheMotionTurnsBetweenTheSamples) {
-  // 23 samples a cycle meet no extreme of the sine.
-  History displacement;
-  const double reach = 1.4 * GrossSlipDisplacement(kMindlin);
-  for (int i = 0; i <= 58; ++i) displacement.push_back(reach * std::sin(2 * M_PI * i / 23));
-  History dense;
-  std::vector<std::size_t> places;
-  constexpr int kBetween = 400;
-  for (int i = 0; i <= 58 * kBetween; ++i) {
-    if (i % kBetween == 0) places.push_back(dense.size());
-    dense.push_back(reach * std::sin(2 * M_PI * i / (23.0 * kBetween)));
-  }
-  const std::vector<double> force =
-      Respond(Model("mindlin-dahl"), kMindlin, dense, {.asymmetry = 0.3});
-  std::vector<double> read;
-  for (const std::size_t place : places) read.push_back(force[place]);
-  const FitResult fit = FitOne(MakeRecord(displacement, read), {.terms = {"asymmetry"}});
-  // The interpolated extremes are off by (2π/23)⁶/200 = 2e-6 of X, and the parameters by some times
-  // that.
-  constexpr double kInterpolated = 1e-4;
-  EXPECT_TRUE(Recovers(fit, kMindlin, kInterpolated));
-  EXPECT_NEAR(fit.Find("asymmetry")->value, 0.3, kInterpolated);
-}
-
 }  // namespace
 }  // namespace mindahl::identification::asymmetry_test

@@ -3,7 +3,6 @@
 #include <memory>
 #include <numeric>
 
-#include "identification/solve/turning_points.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 
@@ -523,39 +522,6 @@ DepartureColumns ColumnsOf(Stages& stages) {
 bool Has(const DepartureColumns& columns, std::string_view code) {
   return std::ranges::any_of(columns.terms,
                              [&](const OmittedTerm& term) { return term.departure->code == code; });
-}
-
-constexpr double kRounding = 1e-9;  // of differences of differences
-
-TEST(Departures, InsertedTurningPointsTakeNoTime) {
-  // Where they do not overshoot, nothing else changes but next to a turn, which no difference is
-  // then taken across.
-  Stages stages(Complete());
-  const DepartureColumns plain = ColumnsOf(stages);
-  const ScaledRecord record = stages.data.records[0];
-  const ScaledRecords turned =
-      PutInTurningPoints(stages.data, std::vector<double>(record.reversals.size(), 0.0));
-  stages.problem.data = &turned;
-  const DepartureColumns with = ColumnsOf(stages);
-  ASSERT_EQ(with.columns.rows(),
-            plain.columns.rows() + static_cast<Eigen::Index>(record.reversals.size()));
-  const auto& inserted = turned.records[0].inserted;
-  std::size_t i = 0;  // of the plain record
-  for (std::size_t k = 0; k < inserted.size(); ++k) {
-    if (inserted[k] != 0) continue;
-    const auto row = static_cast<Eigen::Index>(k);
-    const std::size_t sample = i++;
-    if (std::ranges::any_of(record.reversals, [&](std::size_t reversal) {
-          return sample + 1 >= reversal && sample <= reversal + 1;
-        })) {
-      continue;
-    }
-    EXPECT_LT((with.columns.row(row) - plain.columns.row(static_cast<Eigen::Index>(sample)))
-                  .cwiseAbs()
-                  .maxCoeff(),
-              kRounding * plain.columns.cwiseAbs().maxCoeff())
-        << sample;
-  }
 }
 
 TEST(Departures, SkipsTermsThatAreFitted) {

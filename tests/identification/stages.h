@@ -120,9 +120,9 @@ inline WeightedFit FitWeighted(Stages& stages) {
   WeightedFit result;
   result.solution = stages.Solve();
   const auto drawn = loop::DrawReadings(stages.prepared);
-  EXPECT_TRUE(identification::FitWithWeights(
-      stages.problem, stages.data, stages.options, drawn.get(), stages.solver,
-      identification::SolverOptionsOf(stages.options), result.solution, result.noise));
+  EXPECT_TRUE(identification::FitWithWeights(stages.problem, stages.data, stages.options,
+                                             drawn.get(), stages.solver, result.solution,
+                                             result.noise));
   return result;
 }
 

@@ -288,8 +288,6 @@ bool IsCalledIdentifiable(const FitResult& fit) {
 void JudgeOne(const MinimumProblem& problem, Draws& draws, MinimaTally& tally) {
   FitOptions options = problem.options;
   options.preparation.force_sense = 1;
-  // The judge's problem has its turning points at samples.
-  options.thresholds.turning_point_shift = std::numeric_limits<double>::infinity();
   const std::vector<loop::RecordView> views(problem.records.begin(), problem.records.end());
   const FitResult fit = identification::Fit(problem.records, options);
   ++tally.problems;

@@ -29,8 +29,8 @@ struct FitOptions {
   /// One of FrictionModels().
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
-  /// Names the state of every record, or one for all. Empty: both are fitted, the smaller AICc on
-  /// effective samples is kept, and records that differ are found.
+  /// Names the state of every record, or one for all. Empty: all records are fitted in both, and
+  /// the smaller AICc on effective samples is kept.
   std::vector<models::InitialState> initial_states{};
 
   /// How the records are read, and which samples count.

@@ -86,9 +86,6 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 /// its readings is that of the fit.
 struct RecordFit : loop::RecordReading {
   models::InitialState initial_state = models::InitialState::kVirgin;
-  /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
-  /// records unless they differ in it.
-  double response_noise = 0.0;
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
   /// measured, offsets included; else empty.
   std::vector<double> fitted_displacement;
@@ -112,7 +109,7 @@ struct FitResult {
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
-  /// Initial state of the records; kVirgin if they differ.
+  /// Initial state of the records; kVirgin if the options name several.
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
@@ -124,8 +121,7 @@ struct FitResult {
   double rms = 0.0;            ///< rms of the residuals that count [N or m], unweighted
   /// The rms by which fits are compared [N or m]: n·ln of it is the likelihood's part that laws
   /// differ in. Where the displacement is inexact that of the weighted residuals times the
-  /// geometric mean of what weighs them; else the geometric mean of the records' over the samples,
-  /// so that each counts by its own noise.
+  /// geometric mean of what weighs them; else `rms`.
   double likelihood_rms = 0.0;
   double force_noise = 0.0;  ///< [N], known or estimated, of all records; 0 in a fit of the
                              ///< displacement
@@ -151,9 +147,6 @@ struct FitResult {
 
   /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
-
-  /// True if the initial state is not the same in all records.
-  [[nodiscard]] bool has_mixed_states() const;
 
   /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
   /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.

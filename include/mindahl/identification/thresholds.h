@@ -54,9 +54,6 @@ struct Thresholds {
   /// away. Below it the parabola may miss the curved valley of α and Tc; a loop that slides has
   /// carried its slip force, but for the last of an asymptote.
   double mobilised = 0.9;
-  /// [standard errors] Turning points of the motion between samples are tried if they may move a
-  /// parameter by more. With a bias of this size a 95 % interval covers 94.5 %.
-  double turning_point_shift = 0.2;
   /// [of the samples] A fit is assumed to absorb no more of autocorrelated noise. Beyond it the
   /// residuals no longer determine the noise: its variance is at most doubled.
   double most_absorbed = 0.5;

@@ -117,7 +117,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
       EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(left.size())});
-  if (process.order > 0 || fitted.drawn().size() > 0) {
+  if (process.order > 0 || fitted.drawn().size() > 0 || !noise.of_records.empty()) {
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
     gram.SetNoise(CorrelatedProduct(data, process, noise, fitted.drawn(), columns));

@@ -102,9 +102,10 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
     of_force = share.asDiagonal() * jacobian;
   }
   Eigen::Index begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    const auto rows = static_cast<Eigen::Index>(record.size());
-    product += autocorrelation.Quadratic(of_force.middleRows(begin, rows));
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const auto rows = static_cast<Eigen::Index>(data.records[r].size());
+    const double variance = noise.of_records.empty() ? 1.0 : noise.of_records[r];
+    product += variance * autocorrelation.Quadratic(of_force.middleRows(begin, rows));
     begin += rows;
   }
   return product;
@@ -128,7 +129,8 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
         problem.parameters[result.columns[static_cast<std::size_t>(j)]].prior_root_weight;
   }
   const bool any_prior = !priors.isZero(0.0);
-  const bool is_white = drawn.size() == 0 && noise.autocorrelation.order == 0;
+  const bool is_white =
+      drawn.size() == 0 && noise.autocorrelation.order == 0 && noise.of_records.empty();
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
   if (any_prior) {
     Eigen::MatrixXd rows(2 * size, size);

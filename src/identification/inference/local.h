@@ -31,8 +31,7 @@ struct LocalUncertainty {
 
 /// A problem near one point.
 struct Linearization {
-  Eigen::MatrixXd jacobian;  // weighted, of a record whose turning points were fitted too, freed of
-                             // what these explain
+  Eigen::MatrixXd jacobian;  // weighted
   Eigen::VectorXd residual;  // weighted, model − measured
 };
 
@@ -48,8 +47,8 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
 /// the response to the problem.
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response);
 
-/// JᵀRJ of all records; where the displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of
-/// LocalUncertainty.
+/// JᵀRJ of all records, each times its own variance over that of all; where the displacement has
+/// errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of LocalUncertainty.
 /// @param drawn  weighted residuals that errors of the displacement make, a column a draw, rows as
 ///               the Jacobian's; none where it is exact
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,

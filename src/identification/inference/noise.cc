@@ -203,57 +203,20 @@ bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares) {
   return std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted)) < kOnlyRounding;
 }
 
-double ParametersOfRecord(const Problem& problem, std::size_t r) {
-  double own = 0.0;
-  double shared = 0.0;
-  for (const std::size_t p : problem.parameters.free()) {
-    const Parameter& parameter = problem.parameters[p];
-    if (parameter.term->scope == Scope::kContact) {
-      ++shared;
-    } else if (parameter.record == r) {
-      ++own;
-    }
-  }
-  const auto samples = static_cast<double>(CountedSamplesOf(problem.data->records[r]));
-  return own + shared * samples / static_cast<double>(problem.data->counted);
-}
-
-double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual) {
-  constexpr double kFewest = 8.0;  // degrees of freedom: a variance that is known to one half
-  const std::size_t records = problem.data->records.size();
-  if (records < 2) return 1.0;
-  double count = 0.0;
-  double degrees = 0.0;
-  double pooled = 0.0;
-  double logarithms = 0.0;
-  double reciprocals = 0.0;
-  std::size_t begin = 0;
-  for (std::size_t r = 0; r < records; ++r) {
-    const ScaledRecord& record = problem.data->records[r];
-    const std::span<const double> own = residual.subspan(begin, record.size());
-    begin += record.size();
+std::vector<double> VariancesOfRecords(const ScaledRecords& data,
+                                       std::span<const double> residual) {
+  std::vector<double> variances;
+  double all = 0.0;
+  for (const ScaledRecord& record : data.records) {
     double squares = 0.0;
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] != 0) squares += own[i] * own[i];
-    }
-    const auto samples = static_cast<double>(CountedSamplesOf(record));
-    const double parameters = ParametersOfRecord(problem, r);
-    const double variance = squares / std::max(samples - parameters, 1.0);
-    const double independent =
-        samples / EstimateAutocorrelation({&record, 1}, own).SquaredCorrelations();
-    const double own_degrees = independent - parameters;
-    if (own_degrees < kFewest) continue;
-    ++count;
-    degrees += own_degrees;
-    pooled += own_degrees * variance;
-    logarithms += own_degrees * std::log(std::max(variance, kRoundingRms * kRoundingRms));
-    reciprocals += 1 / own_degrees;
+    for (const double r : residual.first(record.size())) squares += r * r;
+    residual = residual.subspan(record.size());
+    all += squares;
+    variances.push_back(squares /
+                        static_cast<double>(std::max<std::size_t>(CountedSamplesOf(record), 1)));
   }
-  if (count < 2 || pooled < degrees * kOnlyRounding * kOnlyRounding) return 1.0;
-  const double statistic = degrees * std::log(pooled / degrees) - logarithms;
-  const double correction = 1 + (reciprocals - 1 / degrees) / (3 * (count - 1));
-  // Rounding may make the statistic of records with equal variances negative.
-  return PValueOfChiSquared(std::max(statistic, 0.0) / correction, count - 1);
+  for (double& variance : variances) variance *= static_cast<double>(data.counted) / all;
+  return variances;
 }
 
 }  // namespace mindahl::identification

@@ -49,7 +49,7 @@ struct Noise {
   double variance = 0.0;           // of a weighted residual
   bool is_known = false;           // it was given, not estimated
   double force = 0.0;              // standard deviation of the force's own, of all records
-  std::vector<double> of_records;  // of each record's own, where they differ in it; else empty
+  std::vector<double> of_records;  // variances over that of all; empty of one, and where known
   Autocorrelation autocorrelation;
   double repeating = 1.0;           // by how much a repeatable residual widens a variance
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
@@ -98,18 +98,11 @@ class Evidence {
 /// and nothing is to be learnt from what they look like.
 bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares);
 
-/// Bartlett's test that the residuals of all records have one variance: Σν_r·ln(s²/s_r²) against χ²
-/// of one degree less than records, ν_r each record's effective samples less its parameters. A
-/// record with few of them has no say.
-/// @param residual  weighted, of every sample
-/// @returns the chance that noise of one variance makes them so unlike; 1 of one record, and where
-///   residuals are rounding errors
-double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual);
-
 /// Returns the number of samples that count.
 std::size_t CountedSamplesOf(const ScaledRecord& record);
 
-/// Parameters that a record takes up: its own, and its part of the contact's by its samples.
-double ParametersOfRecord(const Problem& problem, std::size_t record);
+/// Returns the mean squares of each record's residuals over that of all.
+/// @param residual  weighted, of every sample, not all zero
+std::vector<double> VariancesOfRecords(const ScaledRecords& data, std::span<const double> residual);
 
 }  // namespace mindahl::identification

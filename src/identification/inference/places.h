@@ -26,7 +26,7 @@ struct Place {
   double progress = 0.0;   // fraction of that change, up to here
 };
 
-/// Returns those of every sample at θ. Turning points that were put in have no time of their own.
+/// Returns those of every sample at θ.
 /// @param held_readings  fraction of the readings that repeat the last one, of a held displacement
 std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
                             double held_readings, Response& response);

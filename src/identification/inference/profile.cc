@@ -144,7 +144,7 @@ double CarriedForce(const Problem& problem, const FitResult& result) {
   if (widest.fitted_force.empty()) return peak_force;
   const auto [low, high] = std::ranges::minmax(widest.fitted_force);
   const double free = static_cast<double>(problem.parameters.free().size());
-  const double error = 2 * widest.response_noise *
+  const double error = 2 * result.ResponseNoise() *
                        std::sqrt(free / std::max(result.residuals.effective_samples, free));
   std::vector<double> measured = widest.fitted_force;
   for (std::size_t i = 0; i < measured.size(); ++i) measured[i] -= widest.residual[i];

@@ -43,16 +43,12 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 ///   the minimum are those of the errors
 /// @param problem   of `data`
 /// @param data      its weights are written
-/// - records that differ in their noise (noise.h) each have its own σ_F, and weigh by it:
-///   w = σ²/σ_r², σ² the mean of all samples' variances
 /// @param drawn     readings of the records; null where their displacements are exact
 /// @param solution  refitted from where it is
-/// @param noise      what the weights stand for
-/// @param by_record  do the records differ in their noise?
+/// @param noise     what the weights stand for
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const loop::DrawnReadings* drawn, Solver& solver,
-                    const SolverOptions& solver_options, Solution& solution, Noise& noise,
-                    bool by_record = false);
+                    const loop::DrawnReadings* drawn, Solver& solver, Solution& solution,
+                    Noise& noise);
 
 }  // namespace mindahl::identification

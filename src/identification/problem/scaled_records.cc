@@ -275,7 +275,6 @@ ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
     take(some.*column, this->*column);
   }
   take(some.counts, counts);
-  take(some.inserted, inserted);
   for (std::size_t c = 0; c < covariates.size(); ++c) take(some.covariates[c], covariates[c]);
   return some;
 }

@@ -28,9 +28,6 @@ struct ScaledRecord {
   std::vector<double> load_change;    // N over its mean less 1, where it varies and is not known
   std::vector<double> root_weight;    // of each residual; 0 where the sample does not count
   std::vector<unsigned char> counts;  // 1 where the sample counts, else 0
-  /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
-  /// where there are none (turning_points.h).
-  std::vector<unsigned char> inserted;
   /// Time that always goes on, in which a lag is counted; empty where no lag is asked for.
   std::vector<double> clock;
   /// Those of ScaledRecords::covariates, over half their range; empty where there are none.
