@@ -23,8 +23,6 @@
 namespace mindahl::identification {
 namespace {
 
-using loop::RecordView;
-
 /// Estimates the noise and the statistics of the residuals.
 /// @param residual  weighted, of every sample
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
@@ -35,8 +33,6 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
     if (any_differs) noise.of_records = VariancesOfRecords(*problem.data, residual);
   }
   double widening = 1.0;
-  std::vector<std::span<const double>> measured;
-  measured.reserve(result.records.size());
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     ResidualStructure& structure = result.records[r].structure;
@@ -44,11 +40,9 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
         DescribeStructure(record, residual.first(record.size()), attempt.options.thresholds);
     residual = residual.subspan(record.size());
     widening = std::max(widening, structure.Widening());
-    const RecordView& view = attempt.prepared.records[r].record;
-    measured.push_back(problem.data->is_forced() ? view.displacement : view.force);
   }
   if (!LeavesOnlyRounding(problem, solution.sum_of_squares)) noise.repeating = widening;
-  result.residuals = DescribeResiduals(result.records, measured);
+  result.residuals = DescribeResiduals(result.records);
   result.residuals.effective_samples = noise.effective_samples();
   Noise of_residuals = noise;
   of_residuals.is_known = false;
@@ -92,29 +86,6 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
   Append(result.findings, FindUndetermined(problem, estimates.local()));
 }
 
-/// Includes Mindlin's contact in a compliant rig, where the record does not distinguish it.
-void ConsiderRig(const Attempt& attempt, const Estimates& fitted, FitResult& result) {
-  const auto rig = TryRig(fitted, result.parameters[kShape], attempt.options, attempt.solver);
-  if (!rig) return;
-  result.parameters = IncludeRival(*rig, attempt.options.thresholds, std::move(result.parameters));
-  result.findings.push_back(
-      {.code = "shape_or_rig",
-       .numbers = {{"rig_stiffness", rig->rig.stiffness}, {"alpha", result.law.shape_exponent}}});
-}
-
-/// Includes the contact of the other initial state, where the record does not distinguish it.
-void ConsiderOtherState(const Rival& other, const Thresholds& thresholds, FitResult& result) {
-  const ParameterEstimates before = result.parameters;
-  result.parameters = IncludeRival(other, thresholds, std::move(result.parameters));
-  const auto& [lower, upper] = std::pair(before[kSlipForce].lower95, before[kSlipForce].upper95);
-  const double slip_force = other.law.slip_force;
-  if (!lower || (slip_force >= *lower && !(slip_force > upper.value_or(slip_force)))) return;
-  const bool is_virgin = result.initial_state == models::InitialState::kVirgin;
-  result.findings.push_back({.code = "initial_state_undecided",
-                             .numbers = {{"slip_force", slip_force}},
-                             .kind = is_virgin ? "steady" : "virgin"});
-}
-
 /// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
 /// Branches whose α differ by 0.05 are no more than 1 % of Tc apart.
 void CoverSteps(const Attempt& attempt, FitResult& result) {
@@ -152,15 +123,17 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
                          std::move(at));
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
-  if (is_tested) ConsiderRig(attempt, fitted, result);
-  if (solved.other_state) ConsiderOtherState(*solved.other_state, thresholds, result);
+  if (is_tested) {
+    Append(result.findings, IncludeCompliantRig(fitted, options, solver, result.parameters));
+  }
+  if (solved.of_other_state) IncludeLaw(*solved.of_other_state, {}, thresholds, result.parameters);
   if (!problem.data->is_forced()) CoverSteps(attempt, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
   }
-  result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
+  result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
   if (is_judged) {
     if (options.initial_states.empty()) {

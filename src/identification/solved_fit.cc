@@ -87,11 +87,11 @@ SolvedFit FitBestState(const Attempt& attempt) {
   const double gain = criterion(steady) - criterion(virgin);
   Candidate& best = gain > 0 ? virgin : steady;
   const Candidate& other = gain > 0 ? steady : virgin;
-  std::optional<Rival> of_other;
+  std::optional<models::BranchLaw> law;
   if (std::abs(gain) < options.thresholds.indistinguishable && other.solution.converged) {
-    of_other = RivalAt(other.problem.parameters, other.solution.theta);
+    law = other.problem.parameters.LawAt(other.solution.theta);
   }
-  return {.best = std::move(best), .other_state = of_other};
+  return {.best = std::move(best), .of_other_state = law};
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   SolvedFit again = FitBestState(attempt);
   if (!std::isfinite(again.solution().sum_of_squares)) return solved;
   best = std::move(again.best);
-  solved.other_state = again.other_state;
+  solved.of_other_state = again.of_other_state;
   fit_with_weights();
   return solved;
 }

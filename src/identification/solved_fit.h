@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "identification/inference/noise.h"
-#include "identification/inference/reweighting.h"
-#include "identification/inference/rivals.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
@@ -16,6 +14,7 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::identification {
 
@@ -35,8 +34,8 @@ struct SolvedFit {
   Candidate best;  ///< best of the initial states that were tried
   Noise noise = {};
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
-  /// Holds the contact of the other initial state, where it is nearly as likely.
-  std::optional<Rival> other_state = {};
+  /// Holds the law of the other initial state, where it is nearly as likely.
+  std::optional<models::BranchLaw> of_other_state = {};
 
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };

@@ -148,8 +148,6 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},
-    {"initial_state_undecided",
-     "the other initial state fits as well, with Tc {slip_force:force}: give --initial-state"},
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses

@@ -46,24 +46,6 @@ TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
   EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
-/// A contact that is unloaded once more in its second cycle: what the law misses of that cycle is
-/// no noise of the others.
-TEST(Adequacy, OfAnEventInOneCycleIsDoubted) {
-  const History cycle = Cycling(Wave::kSine, kReach, 1, kCycle);
-  const std::vector<double> force =
-      Respond(Model("mindlin-dahl"), kLaw, Cycling(Wave::kSine, kReach, 4, kCycle));
-  Record record;
-  Generator generator(1);
-  const std::size_t samples = cycle.size() - 1;
-  for (const std::size_t from : {1U, 0U, 2U, 3U}) {
-    for (std::size_t i = 0; i < samples; ++i) {
-      record.displacement.push_back(cycle[i]);
-      record.force.push_back(force[from * samples + i] + kNoise * Normal(generator));
-    }
-  }
-  EXPECT_EQ(Fitted(record).adequacy.verdict, AdequacyVerdict::kDoubtful);
-}
-
 /// Two tests of forces 1 : 1.3 in one file: what grows with time makes most of the residuals.
 TEST(Adequacy, OfTwoTestsInOneFileIsDoubted) {
   const History displacement = Cycling(Wave::kSine, kReach, 2, 100);

@@ -175,30 +175,30 @@ TEST(Grade, MisfitIsHeldAgainstWhatWasMeasured) {
 TEST(Grade, WhiteNoiseIsNotMissed) {
   FitResult fit = SlidingFit();
   SetResiduals({1, 1, 1, 1, 1, 1}, fit);
-  EXPECT_NEAR(MissedForce(fit, {}), 1.0, kRounding);
+  EXPECT_NEAR(MissedForce(fit), 1.0, kRounding);
   SetResiduals({1, -1, 1, -1, 1, -1}, fit);
-  EXPECT_EQ(MissedForce(fit, {}), 0.0);
+  EXPECT_EQ(MissedForce(fit), 0.0);
   // The residuals 0, 0, 3, 0, 0, 0 have the second differences 0.5·3, −3, 0.5·3 and 0, of mean
   // square 13.5/4; the white variance is 2/3 of it, 2.25, and exceeds the mean square of 1.5.
   SetResiduals({0, 0, 3, 0, 0, 0}, fit);
-  EXPECT_EQ(MissedForce(fit, {}), 0.0);
+  EXPECT_EQ(MissedForce(fit), 0.0);
   // Twice 2 beside it: mean square (4·5 + 9)/6, distances 0, −0.5, 1, −0.5, 0 without the ends.
   SetResiduals({2, 2, 2, 3, 2, 2}, fit);
-  EXPECT_NEAR(MissedForce(fit, {}), std::sqrt(29.0 / 6 - (0.25 + 1 + 0.25) / 4 / 1.5), kRounding);
+  EXPECT_NEAR(MissedForce(fit), std::sqrt(29.0 / 6 - (0.25 + 1 + 0.25) / 4 / 1.5), kRounding);
   fit.records[0].counts[3] = 0;  // no three neighbours are left with the third
-  EXPECT_NEAR(MissedForce(fit, {}), fit.rms, kRounding);
+  EXPECT_NEAR(MissedForce(fit), fit.rms, kRounding);
 }
 
 TEST(Grade, NoiseAndWhatARobustLossWeighsDownAreNotMissed) {
   FitResult fit = SlidingFit();
   SetResiduals({2, 2, 2, 2, 2}, fit);
   fit.adequacy.misfit = 0.5;
-  EXPECT_NEAR(MissedForce(fit, {}), 2.0, kRounding);
+  EXPECT_NEAR(MissedForce(fit), 2.0, kRounding);
   fit.outliers = 1;
-  EXPECT_EQ(MissedForce(fit, {}), 0.5);
+  EXPECT_EQ(MissedForce(fit), 0.5);
   fit.outliers = 0;
   fit.adequacy.verdict = AdequacyVerdict::kAdequate;
-  EXPECT_EQ(MissedForce(fit, {}), 0.5);
+  EXPECT_EQ(MissedForce(fit), 0.5);
 }
 
 TEST(Grade, UseFollowsTheMisfitOverTheHalfGap) {

@@ -15,13 +15,15 @@ constexpr double kRounding = 1e-15;
 
 ResidualStatistics Describe(const Series& residuals, const Series& forces) {
   std::vector<RecordFit> records;
-  for (const std::vector<double>& residual : residuals) {
+  for (std::size_t r = 0; r < residuals.size(); ++r) {
     RecordFit& record = records.emplace_back();
-    record.residual = residual;
-    record.counts.assign(residual.size(), 1);
+    record.residual = residuals[r];
+    record.counts.assign(residuals[r].size(), 1);
+    for (std::size_t i = 0; i < residuals[r].size(); ++i) {
+      record.fitted_force.push_back(forces[r][i] + residuals[r][i]);
+    }
   }
-  const std::vector<std::span<const double>> measured(forces.begin(), forces.end());
-  return DescribeResiduals(records, measured);
+  return DescribeResiduals(records);
 }
 
 TEST(ResidualStatistics, AreThoseComputedByHand) {

@@ -77,7 +77,6 @@ TEST(InitialState, ThatTheRecordDoesNotDecideIsInTheInterval) {
       displacement.push_back(5e-6 * std::lerp(turns[leg], turns[leg + 1], i / 100.0));
     }
   }
-  int undecided = 0;
   int covering = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
     Generator generator(seed);
@@ -85,9 +84,7 @@ TEST(InitialState, ThatTheRecordDoesNotDecideIsInTheInterval) {
     const FitResult fit = FitOne(record);
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     covering += slip_force.upper95.value_or(kMindlin.slip_force) > 0.85 * kMindlin.slip_force;
-    if (fit.FindFinding("initial_state_undecided") != nullptr) ++undecided;
   }
-  EXPECT_GT(undecided, 0);
   EXPECT_GE(covering, 5);  // of six: the other has a valley of its own
 }
 

@@ -68,11 +68,9 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates = testing::EstimatesOf(stages, best, noise);
-  ParameterEstimate shape;
-  shape.value = best.theta[kShape];
-  shape.status = ParameterStatus::kFree;
-  shape.upper95 = shape.value;
-  return TryRig(estimates, shape, stages.options, stages.solver).has_value();
+  ParameterEstimates parameters = ValuesOf(stages.problem, best);
+  parameters[kShape].upper95 = parameters[kShape].value;
+  return IncludeCompliantRig(estimates, stages.options, stages.solver, parameters).has_value();
 }
 
 // --- verdicts
@@ -95,21 +93,6 @@ bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
   result.residuals.rms = misfit * result.PeakForce();
   result.residuals.durbin_watson =
       2 - 2 * std::exp(-1 / (strokes * static_cast<double>(kSamplesAStroke)));
-  return AreUnlikeNoise(result, thresholds);
-}
-
-/// Many residuals that are a fifth of the force, and differ in sign as normal ones do that
-/// alternate by such a correlation.
-bool Alternates(const Thresholds& thresholds, double correlation) {
-  FitResult result = Made();
-  std::vector<double>& residual = result.records[0].residual;
-  const double changes = 0.5 + std::asin(correlation) / std::numbers::pi;
-  for (int i = 0; i < 10'000; ++i) {
-    residual.push_back(std::fmod(std::floor(i * changes), 2) > 0 ? 1.0 : -1.0);
-  }
-  result.records[0].counts.assign(residual.size(), 1);
-  result.residuals.rms = 0.2 * result.PeakForce();
-  result.residuals.durbin_watson = 2.0;
   return AreUnlikeNoise(result, thresholds);
 }
 
@@ -170,9 +153,9 @@ const std::vector<Row>& Cases() {
       {&Thresholds::rigid_beside_rig,
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {
-           const ParameterEstimates before = Made().parameters;
-           const Rival in_rig{{ratio * 1e6, 1.0 / 3, 1.0}, 1.0, {1e6}};
-           return IncludeRival(in_rig, t, before)[kShape].lower95 != before[kShape].lower95;
+           ParameterEstimates parameters = Made().parameters;
+           IncludeLaw({ratio * 1e6, 1.0 / 3, 1.0}, {1e6}, t, parameters);
+           return parameters[kShape].lower95 != Made().parameters[kShape].lower95;
          };
          return widens_alpha(kBelow * 30) && !widens_alpha(kAbove * 30);
        }},
@@ -236,10 +219,6 @@ const std::vector<Row>& Cases() {
        }},
       {&Thresholds::noise_memory,
        [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},
-      {&Thresholds::alternates,
-       [](const Thresholds& t) {
-         return Alternates(t, kAbove * 0.25) && !Alternates(t, kBelow * 0.25);
-       }},
       {&Thresholds::poor_misfit,
        [](const Thresholds& t) {
          return IsSlow(t, 1.0, kAbove * 0.02) && !IsSlow(t, 1.0, kBelow * 0.02);

@@ -23,8 +23,7 @@ using identification::Severity;
 namespace {
 
 /// Findings that only say what a record leaves open, which a clean one may.
-constexpr std::array<std::string_view, 9> kLeftOpen = {"slip_force_bounded_below",
-                                                       "initial_state_undecided",
+constexpr std::array<std::string_view, 8> kLeftOpen = {"slip_force_bounded_below",
                                                        "alpha_not_identifiable",
                                                        "sigma_not_identifiable",
                                                        "slip_force_not_identifiable",

@@ -61,7 +61,6 @@ inline constexpr auto kFindings = [] {
       {"force_at_limit", kNotIdentifiable, kWarning, true},
       {"unknown_past", kNotIdentifiable},
       {.code = "shape_or_rig", .severity = kNote},
-      {.code = "initial_state_undecided"},
       {.code = "prior_contradicted"},
       // about the law: under its own law a parameter is as well known as before
       {"law_undecided", kIdentifiable, kNote},

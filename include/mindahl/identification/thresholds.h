@@ -60,8 +60,8 @@ struct Thresholds {
   /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
   /// by less than 1 % of Tc.
   double jenkins_shape = 0.01;
-  /// [p] Residuals that noise alone makes less often are not noise alone, and records whose noise
-  /// is one have variances that differ so less often. One adequate loop in two hundred is doubted.
+  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
+  /// hundred is doubted.
   double doubt = 0.005;
   /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
   /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
@@ -103,13 +103,8 @@ struct Thresholds {
   /// Within half a stroke the force passes through the whole law: noise of that length cannot be
   /// distinguished from a misfit.
   double noise_memory = 0.5;
-  /// [correlation] A poor misfit whose residuals alternate from sample to sample by more is not
-  /// taken for noise. Sensors' noise is white or wanders; stick–slip and chatter go up and down.
-  double alternates = 0.25;
-  /// [ΔAICc] Masing's law and Dahl's own, and a record of several that is virgin or steady unlike
-  /// the others, are not distinguished if they differ by less. Evidence of e⁵ = 150 to 1: initial
-  /// states differ in a few samples only, where a single odd reading decides, and what either law
-  /// misses of a real loop can be worth less.
+  /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
+  /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
   double undecided = 10.0;
   /// [places of the loop] If every cycle samples fewer, σ and α are not identifiable. Four each
   /// for σ, α, Tc and for where the motion turns between them.

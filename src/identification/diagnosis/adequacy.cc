@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,41 +30,18 @@ double WhiteVariance(const FitResult& result) {
 namespace {
 
 /// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
-/// of both directions come back, of what does not repeat with them, and of smooth residuals no more
-/// than most strokes have: what a single one shows is an event. Else what differs between
+/// of both directions come back, of what does not repeat with them, else what differs between
 /// neighbouring samples.
 double NoiseVariance(const FitResult& result) {
-  constexpr double kSmooth = 1.0;  // Durbin and Watson's statistic: half correlated with the next
   double share = 1.0;
   bool comes_back = false;
   for (const RecordFit& record : result.records) {
     const ResidualStructure& structure = record.structure;
     share = std::min(share, 1 - structure.repeatable_share);
-    if (result.residuals.durbin_watson < kSmooth) {
-      share = std::min(share, structure.typical_share);
-    }
     const auto& [rising, falling] = structure.strokes;
     comes_back = comes_back || (rising > 1 && falling > 1);
   }
   return comes_back ? share * result.rms * result.rms : WhiteVariance(result);
-}
-
-/// True if residuals alternate from sample to sample, and not by chance: of normal ones that
-/// correlate by ρ neighbours differ in sign with a chance of ½ − asin(ρ)/π, whatever spikes there
-/// are among them.
-bool Alternate(const FitResult& result, const Thresholds& thresholds) {
-  double changes = 0.0;
-  double pairs = 0.0;
-  for (const RecordFit& record : result.records) {
-    for (std::size_t i = 1; i < record.residual.size(); ++i) {
-      if (record.counts[i - 1] == 0 || record.counts[i] == 0) continue;
-      ++pairs;
-      if (record.residual[i - 1] * record.residual[i] < 0) ++changes;
-    }
-  }
-  constexpr double kDeviations = 4.0;  // each of 1/(2√n)
-  return changes > pairs / 2 + std::max(std::asin(thresholds.alternates) / std::numbers::pi * pairs,
-                                        kDeviations / 2 * std::sqrt(pairs));
 }
 
 }  // namespace
@@ -76,6 +52,19 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
     return std::abs(slip_force / *facts.half_gap - 1);
   };
   return !(distance(with) < distance(without));
+}
+
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
+  ParameterEstimate slip_force = result.parameters[kSlipForce];
+  const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
+                       slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
+  const bool is_forced = result.response == loop::Channel::kDisplacement;
+  // Half the distance between the medians of a few ends is known to about half its white noise.
+  const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
+  if (is_open && carried < slip_force.value && *slip_force.lower95 < carried) {
+    SetInterval(slip_force, {.lower = carried});
+  }
+  return slip_force;
 }
 
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
@@ -99,12 +88,11 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   return within;
 }
 
-double MissedForce(const FitResult& result, const Thresholds& thresholds) {
+double MissedForce(const FitResult& result) {
   const double explained = result.adequacy.misfit;
   // The rms includes the readings that a robust loss weighs down.
   const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (is_noise || result.outliers > 0) return explained;
-  if (Alternate(result, thresholds)) return std::max(explained, result.rms);
   const double not_white = result.rms * result.rms - WhiteVariance(result);
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
@@ -129,7 +117,6 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   const bool is_small =
       result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
   if (is_small) return false;
-  if (Alternate(result, thresholds)) return true;
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   const double forgotten = -std::log(correlation);
@@ -161,25 +148,22 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   // The rms includes the readings that a robust loss weighs down.
   const bool exceeds_noise =
       result.outliers == 0 && square > thresholds.larger_rms * thresholds.larger_rms * noise;
-  // A term that noise seldom makes, and that makes most of the residuals, is none.
-  constexpr double kMost = 0.5;
-  const bool is_caused = !causes.empty() && causes.front().explains > kMost;
-  if (exceeds_noise || is_caused) {
+  if (exceeds_noise) {
     adequacy.p_value = std::min(adequacy.p_value, thresholds.rare_chance);
-    if (exceeds_noise && noise > 0) {
+    if (noise > 0) {
       adequacy.misfit_over_noise =
           std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));
     }
   }
   const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
-                           is_caused || AreUnlikeNoise(result, thresholds);
+                           AreUnlikeNoise(result, thresholds);
   adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   return adequacy;
 }
 
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   Adequacy adequacy = result.adequacy;
-  const double missed = MissedForce(result, thresholds);
+  const double missed = MissedForce(result);
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   adequacy.misfit = missed;
   adequacy.misfit_over_half_gap.reset();
@@ -205,9 +189,7 @@ FitResult WithoutInadequate(FitResult result) {
   if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
     // Another account of a curve that is not there: also where it is but a note.
-    const bool is_of_the_curve =
-        finding.code == "shape_or_rig" || finding.code == "initial_state_undecided";
-    return is_of_the_curve ||
+    return finding.code == "shape_or_rig" ||
            (!finding.parameters.empty() && !finding.code.row().holds_without_model);
   });
   Finding finding{.code = "model_inadequate"};

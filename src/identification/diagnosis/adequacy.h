@@ -21,6 +21,10 @@ namespace mindahl::identification {
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 
+/// Returns Tc; where its interval is open above its lower limit is no less than the force that the
+/// contact is seen to carry.
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
+
 /// Returns the options of a second fit, with a slip force no larger than the largest force, where
 /// the loop slides over most of its stroke and a law that is not adequate carries its slip force
 /// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
@@ -28,8 +32,8 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
 
 /// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
 /// part that the causes explain or that comes back in every stroke; of others all of them but their
-/// white noise, which residuals that alternate have none of.
-double MissedForce(const FitResult& result, const Thresholds& thresholds);
+/// white noise.
+double MissedForce(const FitResult& result);
 
 /// Returns the variance [N² or m²] of the white part of the residuals that count: 2/3 of the mean
 /// square of a residual's distance from the middle of its neighbours (Gasser, Sroka &
@@ -50,9 +54,9 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);
 
-/// True if residuals are a poor misfit and no noise: they alternate, or remember for longer than
-/// noise_memory by their autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of
-/// that length would be confounded with whatever changes slowly.
+/// True if residuals are a poor misfit and remember for longer than noise_memory, by their
+/// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
+/// confounded with whatever changes slowly.
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 
 /// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use

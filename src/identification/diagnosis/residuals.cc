@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/probability.h"
-#include "loop/statistics.h"
 
 namespace mindahl::identification {
 
@@ -24,35 +23,30 @@ std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& th
   return strokes;
 }
 
-ResidualStatistics DescribeResiduals(std::span<const RecordFit> records,
-                                     std::span<const std::span<const double>> measured) {
+ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
   ResidualStatistics statistics;
   double sum_of_squares = 0.0;
   double sum_of_steps = 0.0;
-  double sum = 0.0;
-  const auto for_each_counted = [&](const auto& visit) {
-    for (std::size_t r = 0; r < records.size(); ++r) {
-      for (std::size_t i = 0; i < records[r].residual.size(); ++i) {
-        if (records[r].counts[i] != 0) visit(r, records[r].residual[i], measured[r][i]);
-      }
+  std::vector<double> measured;  // of samples that count
+  for (const RecordFit& record : records) {
+    const std::vector<double>& fitted =
+        record.fitted_displacement.empty() ? record.fitted_force : record.fitted_displacement;
+    std::optional<double> last;
+    for (std::size_t i = 0; i < record.residual.size(); ++i) {
+      if (record.counts[i] == 0) continue;
+      const double residual = record.residual[i];
+      measured.push_back(fitted[i] - residual);
+      sum_of_squares += residual * residual;
+      if (last) sum_of_steps += (residual - *last) * (residual - *last);
+      statistics.max_abs = std::max(statistics.max_abs, std::abs(residual));
+      last = residual;
     }
-  };
-  std::optional<std::size_t> last_record;
-  double last = 0.0;
-  for_each_counted([&](std::size_t record, double residual, double value) {
-    ++statistics.samples;
-    sum_of_squares += residual * residual;
-    if (last_record == record) sum_of_steps += (residual - last) * (residual - last);
-    statistics.max_abs = std::max(statistics.max_abs, std::abs(residual));
-    sum += value;
-    last_record = record;
-    last = residual;
-  });
-  const auto count = static_cast<double>(statistics.samples);
+  }
+  statistics.samples = measured.size();
+  const auto count = static_cast<double>(measured.size());
+  const double mean = std::accumulate(measured.begin(), measured.end(), 0.0) / count;
   double variation = 0.0;
-  for_each_counted([&](std::size_t /*record*/, double /*residual*/, double value) {
-    variation += (value - sum / count) * (value - sum / count);
-  });
+  for (const double value : measured) variation += (value - mean) * (value - mean);
   statistics.rms = std::sqrt(sum_of_squares / count);
   statistics.r_squared = variation > 0 ? 1 - sum_of_squares / variation : 0.0;
   statistics.durbin_watson = sum_of_squares > 0 ? sum_of_steps / sum_of_squares : 2.0;
@@ -69,7 +63,6 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     std::array<double, kParts> counts{};
   };
   std::array<std::vector<Parts>, 2> strokes;
-  std::vector<double> mean_squares;  // of strokes
   double squares = 0.0;
   double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
@@ -90,7 +83,6 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     if (count < 2) continue;  // left out, but for a reversal that it shares
     strokes[side].push_back(of_stroke);
     ++structure.strokes[side];
-    mean_squares.push_back(own_squares / count);
     squares += own_squares;
     samples += count;
   }
@@ -117,9 +109,6 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     ++parts;
   }
   const double mean_square = squares / samples;
-  if (mean_square > 0) {
-    structure.typical_share = std::min(loop::Median(mean_squares) / mean_square, 1.0);
-  }
   if (parts == 0 || !(within > 0) || !(mean_square > 0)) return structure;
   const double ratio = between / parts / (within / degrees_within);
   if (ratio >= FQuantile(parts, degrees_within, thresholds.rare_chance)) {

@@ -15,9 +15,7 @@ std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& th
 
 /// Describes the residuals that count; differences are taken within a record. Effective samples and
 /// degrees of freedom, which need the noise, are left at 0.
-/// @param measured  of each record, every sample
-ResidualStatistics DescribeResiduals(std::span<const RecordFit> records,
-                                     std::span<const std::span<const double>> measured);
+ResidualStatistics DescribeResiduals(std::span<const RecordFit> records);
 
 /// Makes a one-way analysis of variance of a record's residuals over 20 parts of each main stroke.
 /// @param residual  of the record's samples, in any unit

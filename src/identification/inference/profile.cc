@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "mindahl/loop/disturbances.h"
-
 namespace mindahl::identification {
 namespace {
 
@@ -132,56 +130,26 @@ bool IsOpenAbove(HeldParameter& held, const Estimates& fitted, const Thresholds&
   return held.At(far, fitted.solution().theta) < thresholds.open_slip_force;
 }
 
-/// Returns the force [N] that the contact is seen to carry, the more of two: the fitted one less
-/// twice the error of the fit, and the measured peak less a standard deviation of its white noise:
-/// half the distance between the medians of a few ends is known to about half of that. No more than
-/// T*.
-double CarriedForce(const Problem& problem, const FitResult& result) {
-  const double peak_force = result.PeakForce();
-  if (problem.data->is_forced() || result.records.empty()) return peak_force;
-  if (result.is_scaled_by_load()) return 0.0;
-  const RecordFit& widest = result.WidestRecord();
-  if (widest.fitted_force.empty()) return peak_force;
-  const auto [low, high] = std::ranges::minmax(widest.fitted_force);
-  const double free = static_cast<double>(problem.parameters.free().size());
-  const double error = 2 * result.ResponseNoise() *
-                       std::sqrt(free / std::max(result.residuals.effective_samples, free));
-  std::vector<double> measured = widest.fitted_force;
-  for (std::size_t i = 0; i < measured.size(); ++i) measured[i] -= widest.residual[i];
-  const double white = loop::EstimateDisplacementNoise(measured);
-  const double carried = std::max((high - low) / 2 - error, widest.facts.peak_force - white);
-  return std::min(peak_force, carried / widest.load_ratio);
-}
-
-/// True if the parabola's interval of a logarithm, or of α, is too wide for a parabola.
-bool IsBadlyKnown(const Estimates& fitted, std::size_t parameter, const Thresholds& thresholds) {
-  return !(fitted.HalfWidth(parameter) <= thresholds.parabola_error);
-}
-
-/// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
-/// is badly known, and where the likelihood at the upper end of the parabola's interval is another.
-bool NeedsProfile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-                  Solver& solver) {
-  const Problem& problem = fitted.problem();
-  const Solution& best = fitted.solution();
-  const double variance = fitted.noise().variance;
-  if (problem.parameters[parameter].fixed || problem.parameters[parameter].absent) return false;
-  const bool is_inside =
-      std::ranges::all_of(std::array{parameter, kSlipForce, kStiffness, kShape},
-                          [&](std::size_t p) { return best.side[p] == BoundSide::kInside; });
-  const double half = fitted.HalfWidth(parameter);
-  if (!is_inside || IsBadlyKnown(fitted, parameter, options.thresholds)) return true;
+/// True if the likelihood at the upper end of the parabola's interval of Tc is another: a skewness
+/// shows at either end.
+bool IsSkewed(const Estimates& fitted, const FitOptions& options, Solver& solver) {
   SolverOptions search = SolverOptionsOf(options);
   // The parabola predicts the cost at the end.
   search.predicts_last = true;
   constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
   const double critical = fitted.critical();
-  search.last_step = kLastGain * variance / (best.sum_of_squares + critical * variance);
-  HeldParameter held(fitted, parameter, search, solver);
-  // A skewness shows at either end.
-  const std::vector<double> start = fitted.Beside(parameter, half);
-  const double ratio = held.At(start[parameter], start) / critical;
+  const double variance = fitted.noise().variance;
+  search.last_step =
+      kLastGain * variance / (fitted.solution().sum_of_squares + critical * variance);
+  HeldParameter held(fitted, kSlipForce, search, solver);
+  const std::vector<double> start = fitted.Beside(kSlipForce, fitted.HalfWidth(kSlipForce));
+  const double ratio = held.At(start[kSlipForce], start) / critical;
   return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
+}
+
+bool IsFree(const Estimates& fitted, std::size_t parameter) {
+  const Parameter& of = fitted.problem().parameters[parameter];
+  return !of.fixed && !of.absent;
 }
 
 /// True if a loop that hardly dissipates leaves open that it is far from slip.
@@ -196,21 +164,26 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
   return IsOpenAbove(held, fitted, options.thresholds);
 }
 
-/// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
+/// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail: all of a loop that
+/// hardly slips, of a law at a bound, and where Tc or the rig is too badly known for a parabola.
 std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
+  const auto is_at_bound = [&](std::size_t p) {
+    return fitted.solution().side[p] != BoundSide::kInside;
+  };
+  const auto is_badly_known = [&](std::size_t p) {
+    return !(fitted.HalfWidth(p) <= options.thresholds.parabola_error);
+  };
   const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force;
-  const bool knows_slip = fitted.problem().parameters[kSlipForce].fixed;
-  if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, solver) ||
-      NeedsProfile(fitted, kRig, options, solver) ||
-      MayBeFarFromSlip(fitted, result, options, solver)) {
-    return {kStiffness, kShape, kSlipForce, kRig};
-  }
-  // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
-  // parabola is wrong.
-  const bool only_rounding = LeavesOnlyRounding(fitted.problem(), fitted.solution().sum_of_squares);
-  if (!IsBadlyKnown(fitted, kStiffness, options.thresholds) && !only_rounding) return {};
-  return {kStiffness};
+  const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
+  const bool is_slip_open =
+      IsFree(fitted, kSlipForce) &&
+      (!slips || std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
+       is_badly_known(kSlipForce) || IsSkewed(fitted, options, solver) ||
+       MayBeFarFromSlip(fitted, result, options, solver));
+  if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig};
+  if (is_badly_known(kStiffness)) return {kStiffness};
+  return {};
 }
 
 }  // namespace
@@ -238,7 +211,7 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   ParameterEstimates parameters = result.parameters;
   const double quantile = fitted.quantile();
   for (const std::size_t p : ProfiledOf(fitted, result, options, solver)) {
-    if (fitted.problem().parameters[p].fixed || fitted.problem().parameters[p].absent) continue;
+    if (!IsFree(fitted, p)) continue;
     const auto& reported = fitted.problem().parameters.reported();
     const auto k = static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin());
     ParameterEstimate& estimate = parameters[k];
@@ -260,17 +233,6 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   SetInterval(shape, {.lower = shape.lower95});
   shape.standard_error.reset();
   return parameters;
-}
-
-ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult& result) {
-  ParameterEstimate slip_force = result.parameters[kSlipForce];
-  const bool is_open = slip_force.lower95 && !slip_force.upper95;
-  if (!is_open || slip_force.status == ParameterStatus::kFixed) return slip_force;
-  const double carried = CarriedForce(problem, result);
-  if (carried < slip_force.value && *slip_force.lower95 < carried) {
-    SetInterval(slip_force, {.lower = carried});
-  }
-  return slip_force;
 }
 
 }  // namespace mindahl::identification

@@ -29,8 +29,4 @@ Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& o
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver);
 
-/// Returns Tc, a limit of which is no less than the force that the contact is seen to carry, unless
-/// the fit is too poor to say.
-ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult& result);
-
 }  // namespace mindahl::identification

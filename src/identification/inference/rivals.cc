@@ -12,44 +12,34 @@ namespace mindahl::identification {
 
 using contact::kMindlinShapeExponent;
 
-Rival RivalAt(const Parameters& parameters, std::span<const double> theta) {
-  return {parameters.LawAt(theta), parameters.LoadExponentAt(theta)};
-}
-
-ParameterEstimates IncludeRival(const Rival& rival, const Thresholds& thresholds,
-                                ParameterEstimates parameters) {
-  if (rival.law.tangential_stiffness >= thresholds.rigid_beside_rig * rival.rig.stiffness) {
-    return parameters;
-  }
-  for (ParameterEstimate& estimate : parameters) {
-    const auto include = [&](double lower, double upper) {
-      Include(estimate, {.lower = lower, .upper = upper});
-    };
-    if (estimate.name == "alpha") include(rival.law.shape_exponent, rival.law.shape_exponent);
-    if (estimate.name == "load_exponent") include(rival.load_exponent, rival.load_exponent);
-    if (estimate.name != "sigma" && estimate.name != "slip_force") continue;
-    const double value =
-        estimate.name == "sigma" ? rival.law.tangential_stiffness : rival.law.slip_force;
+void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
+                const Thresholds& thresholds, ParameterEstimates& parameters) {
+  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.stiffness) return;
+  Include(parameters[kShape], {.lower = law.shape_exponent, .upper = law.shape_exponent});
+  for (const auto& [p, value] :
+       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
+    ParameterEstimate& estimate = parameters[p];
     if (estimate.lower95 && estimate.upper95) {
       IncludeRatios(estimate, std::array{value / estimate.value});
     } else {
-      include(value, value);
+      Include(estimate, {.lower = value, .upper = value});
     }
   }
-  return parameters;
 }
 
-std::optional<Rival> TryRig(const Estimates& fitted, const ParameterEstimate& shape,
-                            const FitOptions& options, Solver& solver) {
+std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
+                                           Solver& solver, ParameterEstimates& parameters) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
   const Noise& noise = fitted.noise();
+  const Thresholds& thresholds = options.thresholds;
+  const ParameterEstimate& shape = parameters[kShape];
   // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
   // is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
       problem.parameters[kShape].has_prior() || shape.status == ParameterStatus::kFixed ||
       !shape.upper95 || !(*shape.upper95 < kMindlinShapeExponent) ||
-      !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
+      !(kMindlinShapeExponent - shape.value > thresholds.shape_effect)) {
     return std::nullopt;
   }
   constexpr double kStiffer = 0.1;  // of the compliance is the contact's
@@ -70,10 +60,15 @@ std::optional<Rival> TryRig(const Estimates& fitted, const ParameterEstimate& sh
   const auto samples = static_cast<double>(noise.samples);
   const double loss = Evidence(noise.samples, samples * fitted.WhiteShare(kShape))
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
-  if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
-  Rival rival = RivalAt(sprung.problem.parameters, solution.theta);
-  rival.rig = sprung.problem.parameters.RigAt(solution.theta);
-  return rival;
+  if (!solution.converged || !(loss < thresholds.indistinguishable)) return std::nullopt;
+  const models::SeriesSpring rig = sprung.problem.parameters.RigAt(solution.theta);
+  IncludeLaw(sprung.problem.parameters.LawAt(solution.theta), rig, thresholds, parameters);
+  for (ParameterEstimate& estimate : parameters) {
+    const double exponent = sprung.problem.parameters.LoadExponentAt(solution.theta);
+    if (estimate.name == "load_exponent") Include(estimate, {exponent, exponent});
+  }
+  return Finding{.code = "shape_or_rig",
+                 .numbers = {{"rig_stiffness", rig.stiffness}, {"alpha", shape.value}}};
 }
 
 }  // namespace mindahl::identification
