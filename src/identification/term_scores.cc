@@ -10,7 +10,7 @@
 #include "identification/dense.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
-#include "identification/problem/moved_samples.h"
+#include "identification/problem/motion.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
 

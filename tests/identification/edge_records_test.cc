@@ -122,14 +122,11 @@ TEST(EdgeRecords, ADurationWhoseInverseIsNoNumberIsRefused) {
 }
 
 TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
-  // The chord over a tenth of the way is softer than σ, and steeper than T*/X.
   const Record record = Loop();
   const double secant = kLaw.slip_force / testing::kReach;
-  for (const double stiffness : {0.5 * secant, 1.01 * secant}) {
-    EXPECT_THAT(RefusalOf({record}, {.fixed = {{"rig_stiffness", stiffness}}}),
-                AllOf(HasSubstr("rig_stiffness [N/m] = "),
-                      HasSubstr("the stiffness that the loop itself has")));
-  }
+  EXPECT_THAT(
+      RefusalOf({record}, {.fixed = {{"rig_stiffness", 0.5 * secant}}}),
+      AllOf(HasSubstr("rig_stiffness [N/m] = "), HasSubstr("the stiffness of the loop itself")));
   const double stiff = 2 * kLaw.tangential_stiffness;
   EXPECT_EQ(RefusalOf({record}, {.fixed = {{"rig_stiffness", stiff}}}), "");
   EXPECT_EQ(RefusalOf({record}, {.terms = {"rig_stiffness"}}), "");

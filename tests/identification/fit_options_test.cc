@@ -62,8 +62,8 @@ TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
             "3 samples are too few for 5 free parameters: record more or fix some");
   EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0, 1, 0, 0.5}, {0, 1, -1, 1, -1, 0})},
                       {.preparation = {.cycles = CountRange{3, 9}}}),
-            "2 samples are too few for 5 free parameters; of 6 that were read 4 are left out, 0 "
-            "of them glitches: record more or fix some");
+            "2 samples are too few for 5 free parameters; of 6 that were read 4 are left out: "
+            "record more or fix some");
   EXPECT_THAT(RefusalOf({MakeRecord({0, 1, 0}, {0, 1})}, {}), HasSubstr("force"));
   Record broken = Loop();
   broken.force[17] = std::numeric_limits<double>::quiet_NaN();

@@ -170,7 +170,7 @@ TEST(ImposedForceFit, RefusesOptionsOfForceFits) {
   EXPECT_THAT(refusal([](FitOptions& options) { options.force_noise = 0.1; }),
               HasSubstr("imposed and taken as exact"));
   EXPECT_THAT(refusal([](FitOptions& options) { options.covariates = {"pressure"}; }),
-              HasSubstr("a covariate has no place"));
+              HasSubstr("covariate has no place"));
   EXPECT_THAT(MessageOf([&] { FitOne(loop, {.terms = {"displacement_drift"}}); }),
               HasSubstr("displacement_drift has no place in a fit of the force"));
 }

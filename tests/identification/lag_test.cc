@@ -1,4 +1,4 @@
-#include "identification/problem/moved_samples.h"
+#include "identification/problem/motion.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 

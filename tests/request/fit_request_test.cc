@@ -97,7 +97,7 @@ TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
 TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
   const std::vector<std::pair<const char*, Change>> refused = {
       {"rig_stiffness has no place", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
-      {"a covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
+      {"covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
       {"--terms auto cannot", [](FitRequest& r) { r.chooses_terms = true; }},
       {"lag has no place", [](FitRequest& r) { r.terms = {"lag"}; }},
       {"--compare cannot", [](FitRequest& r) { r.compare = true; }},

@@ -197,7 +197,7 @@ void ColumnMaker::FollowMotion(const DepartureColumn& column, std::span<double> 
   const auto evaluate = [&](const Problem& problem, std::span<const double> theta,
                             std::span<double> to) {
     response.Bind(problem);
-    response.Evaluate(PointAt(problem, theta), to);
+    response.Evaluate(theta, to);
   };
   if (!moved_) {
     moved_ = *problem_.data;

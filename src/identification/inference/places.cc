@@ -114,7 +114,7 @@ std::vector<Place> PlacesUnderForce(const Problem& problem, std::span<const doub
   const ScaledRecords& data = *problem.data;
   std::vector<double> displacement(problem.size());
   response.Bind(problem);
-  response.Evaluate(PointAt(problem, theta), displacement);
+  response.Evaluate(theta, displacement);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (double& value : displacement) value *= scale;
   std::vector<Place> places(problem.size());
@@ -152,7 +152,7 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   ResponseColumns wanted;
   wanted[TermId::kAsymmetry] = by_asymmetry;
   response.Bind(problem);
-  response.Differentiate(PointAt(problem, theta), force, wanted);
+  response.Differentiate(theta, force, wanted);
   Predict(problem, theta, response, complete);
   double peak = 0.0;
   for (const double value : force) peak = std::max(peak, std::abs(value));

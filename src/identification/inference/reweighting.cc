@@ -100,7 +100,7 @@ class Reweighting {
     for (int round = 0; round < kMostRounds; ++round) {
       SetWeights(WeightsByNoise(loss));
       if (loss != Loss::kNone) {
-        SolveRobustly(problem_, loss, unit_, SolverOptionsOf(options_), solution_);
+        SolveByCeres(problem_, loss, unit_, SolverOptionsOf(options_), solution_);
       } else {
         const std::vector<double> start = solution_.theta;
         solver_.Bind(problem_);

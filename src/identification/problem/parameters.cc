@@ -6,76 +6,71 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <numbers>
 #include <vector>
 
 #include "core/refuse.h"
 #include "identification/dense.h"
-#include "identification/problem/moved_samples.h"
+#include "identification/problem/motion.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 
 namespace {
 
-/// Returns position and force of the samples in the second halves of the strokes of one direction,
-/// a row each; of the forces a cubic over the position is taken off.
-Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
+/// Returns position and force of samples in the second halves of the strokes of one direction, a
+/// row each, some 500; of the forces a cubic over the position is taken off.
+Eigen::MatrixXd SlidingForces(const ScaledRecords& data, double direction) {
   constexpr double kMayStick = 0.5;
+  constexpr std::size_t kMostSamples = 500;
   constexpr Eigen::Index kFewest = 12;  // for a cubic and a wave to be distinguished from noise
-  Eigen::MatrixXd forces(2 * static_cast<Eigen::Index>(data.samples()), 2);  // ends count twice
-  Eigen::Index count = 0;
+  std::vector<std::array<double, 2>> sliding;
   for (const ScaledRecord& record : data.records) {
-    for (const auto& [begin, end, direction] : StrokesOf(record.displacement, record.reversals)) {
-      const double from = record.displacement[begin];
-      const double way = record.displacement[end] - from;
-      for (std::size_t i = begin; i <= end && (way > 0) == is_up; ++i) {
+    for (const Stroke& stroke : StrokesOf(record.displacement, record.reversals)) {
+      const double from = record.displacement[stroke.begin];
+      const double travel = record.displacement[stroke.end] - from;
+      for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
         const double position = record.displacement[i];
-        if ((position - from) / way < kMayStick || record.counts[i] == 0) continue;
-        forces.row(count++) << position, record.force[i];
+        const bool slides = (position - from) / travel >= kMayStick;
+        if (stroke.direction != direction || !slides || record.counts[i] == 0) continue;
+        sliding.push_back({position, record.force[i]});
       }
     }
   }
-  if (count < kFewest) count = 0;
-  forces.conservativeResize(count, 2);
-  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(count, 4);
+  const std::size_t every = 1 + sliding.size() / kMostSamples;
+  const auto count = static_cast<Eigen::Index>((sliding.size() + every - 1) / every);
+  Eigen::MatrixXd forces(count >= kFewest ? count : 0, 2);
+  for (Eigen::Index i = 0; i < forces.rows(); ++i) {
+    const auto& [position, force] = sliding[static_cast<std::size_t>(i) * every];
+    forces.row(i) << position, force;
+  }
+  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(forces.rows(), 4);
   for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(forces.col(0));
-  if (count > 0) forces.col(1) = LeftOver(powers, forces.col(1));
+  if (forces.rows() > 0) forces.col(1) = LeftOver(powers, forces.col(1));
   return forces;
 }
 
-}  // namespace
-
+/// Returns the period, in units of the displacement, with which the forces of both directions vary
+/// most over the position: that of the largest peak of their spectra together, one phase for each
+/// direction and all strokes, of periods that fit twice into a stroke or oftener.
 double StartingPeriod(const ScaledRecords& data) {
-  constexpr double kLongest = 1.0;
-  constexpr double kStep = 0.1;  // of the frequency: a fifth of what a stroke resolves
-  constexpr int kSteps = 390;    // to a frequency of 40
-  constexpr Eigen::Index kMostSamples = 500;
-  const std::array directions = {SlidingForces(data, true), SlidingForces(data, false)};
-  double best = 0.0;
-  double period = kLongest;
-  for (int step = 0; step <= kSteps; ++step) {
-    const double frequency = 1 / kLongest + kStep * step;
-    double power = 0.0;
-    for (const Eigen::MatrixXd& forces : directions) {
-      const Eigen::Index every = 1 + forces.rows() / kMostSamples;
-      std::complex<double> sum = 0.0;
-      for (Eigen::Index i = 0; i < forces.rows(); i += every) {
-        sum += forces(i, 1) * std::polar(1.0, 2 * std::numbers::pi * frequency * forces(i, 0));
-      }
-      if (forces.rows() == 0) continue;
-      power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.rows());
+  constexpr Eigen::Index kFrequencies = 391;  // a fifth of what a stroke resolves apart
+  const Eigen::ArrayXd frequencies = Eigen::ArrayXd::LinSpaced(kFrequencies, 1.0, 40.0);
+  Eigen::ArrayXd power = Eigen::ArrayXd::Zero(kFrequencies);
+  for (const double direction : {1.0, -1.0}) {
+    const Eigen::MatrixXd forces = SlidingForces(data, direction);
+    for (Eigen::Index k = 0; k < kFrequencies && forces.rows() > 0; ++k) {
+      const Eigen::ArrayXd phase = 2 * std::numbers::pi * frequencies[k] * forces.col(0).array();
+      const double cosine = forces.col(1).dot(phase.cos().matrix());
+      const double sine = forces.col(1).dot(phase.sin().matrix());
+      power[k] += (cosine * cosine + sine * sine) / static_cast<double>(forces.rows());
     }
-    if (!(power > best)) continue;
-    best = power;
-    period = 1 / frequency;
   }
-  return std::min(period, kLongest);
+  Eigen::Index best = 0;
+  power.maxCoeff(&best);
+  return 1 / frequencies[best];
 }
-
-namespace {
 
 /// Squares and products of what is further from the unit of the data overflow or vanish.
 void RequireNearUnit(const Parameter& parameter, std::string_view quantity, double value,
@@ -95,13 +90,6 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
   if (parameter.term->positive || parameter.term->lowest > 0) {
     RequirePositive(quantity, value);
-    // Rounding errors would decide the phase of a shorter one.
-    const double shortest = 2e-9 * parameter.scale;
-    if (parameter.term->id == TermId::kRipplePeriod && value < shortest) {
-      ThrowInvalid(
-          quantity, value,
-          fmt::format("must be at least {:.3g} m, 1e-9 of the displacement's range", shortest));
-    }
   } else if (parameter.term->id == TermId::kAlpha ||
              parameter.term->motion == ContactMotion::kBehindGap) {
     RequireNonNegative(quantity, value);
@@ -117,10 +105,6 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
     RequireFinite(quantity, value);
   }
   RequireNearUnit(parameter, quantity, value, parameter.term->positive);
-}
-
-bool IsAskedFor(const FitOptions& options, const Term& term) {
-  return std::ranges::find(options.terms, term.name) != options.terms.end();
 }
 
 void Hold(Parameter& parameter, double value) {
@@ -161,6 +145,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
     parameter.upper = LongestLag(MeanCycleDuration({}, data.size(), data.reversals.size()));
     parameter.lower = -parameter.upper;
   }
+  const bool is_asked_for = std::ranges::find(options.terms, term.name) != options.terms.end();
   switch (term.presence) {
     case Presence::kAlways:
       break;
@@ -172,13 +157,13 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
       }
       break;
     case Presence::kReported:
-      if (!IsAskedFor(options, term)) Hold(parameter, 0.0);
+      if (!is_asked_for) Hold(parameter, 0.0);
       break;
     case Presence::kOnDemand:
-      parameter.fixed = parameter.absent = !IsAskedFor(options, term);
-      if (term.has_start && !parameter.absent) {
-        parameter.theta = term.positive ? std::log(StartingPeriod(all)) : term.start;
-      }
+      parameter.fixed = parameter.absent = !is_asked_for && !term.of_column;
+      if (!is_asked_for) break;
+      parameter.theta =
+          term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all)) : term.start;
       break;
     case Presence::kLoadSeries:
       parameter.fixed = parameter.absent = !all.is_load_series;
@@ -190,21 +175,14 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   return parameter;
 }
 
-/// @param column  among those of the data
-Parameter MakeParameterOfColumn(const Term& term, std::size_t column, const ScaledRecords& data) {
-  const CovariateColumn& covariate = data.covariates[column];
-  TermUnits units = data.records.front().units;
-  units.covariate = covariate.scale;
-  return {.term = &term,
-          .column = column,
-          .column_name = covariate.name,
-          .column_unit = covariate.unit,
-          .scale = term.scale(units),
-          .lower = term.lowest,
-          .upper = term.highest};
-}
-
 }  // namespace
+
+void RequirePlace(const Term& term, loop::Channel response) {
+  if (term.presence != Presence::kNever) return;
+  const bool fits_force = response == loop::Channel::kForce;
+  throw InvalidArgument(fmt::format("{} has no place in a fit of the {}: leave it out", term.name,
+                                    fits_force ? "force" : "displacement"));
+}
 
 bool HasTerm(const FitOptions& options, std::string_view name) {
   return options.fixed.contains(std::string(name)) ||
@@ -231,17 +209,9 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  switch (parameter.term->theory_bound) {
-    case TheoryBound::kNone:
-      return true;
-    case TheoryBound::kLower:
-      return side == BoundSide::kUpper;
-    case TheoryBound::kUpper:
-      return side == BoundSide::kLower;
-    case TheoryBound::kBoth:
-      break;
-  }
-  return false;
+  const TheoryBound of_theory = parameter.term->theory_bound;
+  return of_theory != TheoryBound::kBoth &&
+         of_theory != (side == BoundSide::kLower ? TheoryBound::kLower : TheoryBound::kUpper);
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
@@ -251,13 +221,16 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
   for (const Term& term : terms) {
     if (term.scope != Scope::kContact) continue;
-    if (term.of_column) {
-      for (std::size_t c = 0; c < options.covariates.size(); ++c) {
-        parameters_.push_back(MakeParameterOfColumn(term, c, data));
-      }
-      continue;
+    const std::size_t count = term.of_column ? options.covariates.size() : 1;
+    for (std::size_t c = 0; c < count; ++c) {
+      Parameter& parameter = parameters_.emplace_back(MakeParameter(term, 0, data, options));
+      if (!term.of_column) continue;
+      const CovariateColumn& covariate = data.covariates[c];
+      parameter.column = c;
+      parameter.column_name = covariate.name;
+      parameter.column_unit = covariate.unit;
+      parameter.scale /= covariate.scale;
     }
-    parameters_.push_back(MakeParameter(term, 0, data, options));
   }
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   for (std::size_t r = 0; r < records_; ++r) {
@@ -270,76 +243,59 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   const bool all_are_steady = !AnyIsVirgin(states);
+  const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
+  if (is_masing && data.load_varies) KeepShapeBelowOne();
   ApplyOptions(options, all_are_steady, data.prior_noise);
-  RequireNeededTerms();
-  RequireOneMotion();
-  if (options.model->memory == models::Memory::kReturnPoint) {
-    if (all_are_steady) HoldConfoundedAsymmetry();
-    if (data.load_varies) KeepShapeBelowOne(options);
-  }
-  for (const Parameter& parameter : parameters_) {
-    if (parameter.absent || !parameter.term->needs_time) continue;
-    for (const ScaledRecord& record : data.records) {
-      if (record.velocity.empty()) {
-        throw InvalidArgument(
-            fmt::format("{} needs the time of every sample in every record", parameter.term->name));
-      }
-    }
-  }
+  RequireTerms(data);
+  if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
+  if (is_masing && data.load_varies) KeepShapeBelowOne();
   Sort();
 }
 
-bool Parameters::any_zero_is_known() const {
-  return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
-    return parameter.term->id == TermId::kForceOffset && parameter.fixed;
-  });
-}
-
-/// Refuses a parameter without the one that it needs.
-void Parameters::RequireNeededTerms() const {
-  for (const Parameter& parameter : parameters_) {
-    const Term& term = *parameter.term;
-    if (parameter.absent || term.needs.empty()) continue;
-    if (!parameters_[PositionOf(FindTerm(term.needs)->id)].absent) continue;
-    throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
-  }
-}
-
-/// Refuses two terms that move the contact.
-void Parameters::RequireOneMotion() const {
-  const std::size_t first = PositionOfMotion();
-  for (std::size_t p = first + 1; p < size(); ++p) {
-    if (parameters_[p].absent || parameters_[p].term->motion == ContactMotion::kMeasured) continue;
-    throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
-                                      parameters_[first].term->name, parameters_[p].term->name));
+/// Refuses a term without the one or the time that it needs, and a second one that moves the
+/// contact.
+void Parameters::RequireTerms(const ScaledRecords& data) const {
+  const bool is_timed = std::ranges::none_of(
+      data.records, [](const ScaledRecord& record) { return record.velocity.empty(); });
+  const std::size_t moving = PositionOfMotion();
+  for (std::size_t p = 0; p < size(); ++p) {
+    const Term& term = *parameters_[p].term;
+    if (parameters_[p].absent) continue;
+    if (term.needs_time && !is_timed) {
+      throw InvalidArgument(
+          fmt::format("{} needs the time of every sample in every record", term.name));
+    }
+    if (!term.needs.empty() && parameters_[PositionOf(FindTerm(term.needs)->id)].absent) {
+      throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
+    }
+    if (p > moving && term.motion != ContactMotion::kMeasured) {
+      throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
+                                        parameters_[moving].term->name, term.name));
+    }
   }
 }
 
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
   Parameter& asymmetry = parameters_[RowOf(TermId::kAsymmetry)];
-  if (asymmetry.fixed || any_zero_is_known()) return;
+  const bool any_zero_is_known = std::ranges::any_of(parameters_, [](const Parameter& parameter) {
+    return parameter.term->id == TermId::kForceOffset && parameter.fixed;
+  });
+  if (asymmetry.fixed || any_zero_is_known) return;
   asymmetry.theta = 0.0;
   asymmetry.fixed = asymmetry.confounded = true;
 }
 
 /// Bounds α: under a load that varies slip must be complete at a finite displacement.
-void Parameters::KeepShapeBelowOne(const FitOptions& options) {
+void Parameters::KeepShapeBelowOne() {
   Parameter& shape = parameters_[kShape];
-  const double lowest = shape.fixed ? shape.theta : shape.lower;
-  if (shape.fixed ? lowest > kHighestShapeUnderLoad : lowest >= kHighestShapeUnderLoad) {
-    ThrowInvalid("alpha [-]", lowest,
-                 fmt::format("must be below {} where the normal load varies: the law then slips at "
-                             "a finite displacement; keep to one load with a load window",
-                             kHighestShapeUnderLoad));
-  }
-  const auto start = options.start.find("alpha");
-  if (start != options.start.end() && start->second > kHighestShapeUnderLoad && !shape.fixed) {
-    ThrowInvalid(
-        "start of alpha [-]", start->second,
-        fmt::format("must be at most {} where the normal load varies", kHighestShapeUnderLoad));
-  }
   shape.upper = std::min(shape.upper, kHighestShapeUnderLoad);
+  const double lowest = shape.fixed ? shape.theta : shape.lower;
+  if (lowest < shape.upper) return;
+  ThrowInvalid("alpha [-]", lowest,
+               fmt::format("must be below {} where the normal load varies: the law then slips at a "
+                           "finite displacement; keep to one load with a load window",
+                           kHighestShapeUnderLoad));
 }
 
 void Parameters::Sort() {
@@ -398,11 +354,9 @@ Parameter& Parameters::Find(std::string_view name) {
           "than 1 %; give --normal-load N1,N2,...",
           name));
     }
-    if (parameters_[i].term->presence == Presence::kNever) {
-      throw InvalidArgument(
-          fmt::format("{} has no place in a fit of the {}", name,
-                      origin_ == OriginId(loop::Channel::kForce) ? "displacement" : "force"));
-    }
+    const bool fits_force = origin_ == TermId::kDisplacementOffset;
+    RequirePlace(*parameters_[i].term,
+                 fits_force ? loop::Channel::kForce : loop::Channel::kDisplacement);
     return parameters_[i];
   }
   std::vector<std::string> names;
@@ -457,10 +411,13 @@ void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, do
   }
   ApplyPriors(options, prior_noise);
   for (const auto& [name, value] : options.start) {
-    const Parameter& parameter = Find(name);
+    Parameter& parameter = Find(name);
     RequireInDomain(parameter, name, value);
     const double theta = parameter.ToTheta(value);
-    if (parameter.fixed || (theta >= parameter.lower && theta <= parameter.upper)) continue;
+    if (parameter.fixed) continue;
+    parameter.theta = theta;
+    parameter.started_by_user = true;
+    if (theta >= parameter.lower && theta <= parameter.upper) continue;
     const double one_end = parameter.ToValue(parameter.lower);
     const double other_end = parameter.ToValue(parameter.upper);
     ThrowInvalid(fmt::format("start of {} [{}]", name, parameter.term->unit), value,
@@ -495,14 +452,6 @@ double Parameters::PriorCost(std::span<const double> theta) const {
     cost += off * off;
   }
   return cost;
-}
-
-bool Parameters::FindStart(const FitOptions& options, std::size_t i, double& theta) const {
-  if (options.start.empty()) return false;
-  const auto start = options.start.find(NameOf(i));
-  if (start == options.start.end()) return false;
-  theta = parameters_[i].ToTheta(start->second);
-  return true;
 }
 
 void Parameters::Fix(std::size_t i, double theta) {

@@ -21,16 +21,12 @@ inline bool AnyIsVirgin(std::span<const models::InitialState> states) {
   return std::ranges::find(states, models::InitialState::kVirgin) != states.end();
 }
 
-/// Returns the period, in units of the displacement, with which the forces of both directions vary
-/// most over the position: that of the largest peak of their spectra together, one phase for each
-/// direction and all strokes, of periods that fit twice into a stroke or oftener. Of each stroke
-/// the first half is left out, in which the contact may stick, and a cubic is taken off. Cost:
-/// 0.8 million sines at most.
-double StartingPeriod(const ScaledRecords& data);
-
 /// True if a fit has a term that is on demand, fitted or at a given value.
 bool HasTerm(const FitOptions& options, std::string_view name);
 bool HasTerm(const FitOptions& options, TermId id);
+
+/// Refuses a term of the other channel.
+void RequirePlace(const Term& term, loop::Channel response);
 
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
 ///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ
@@ -47,9 +43,10 @@ struct Parameter {
   double upper = 0.0;
   bool fixed = false;
   bool bounded_by_user = false;
-  bool absent = false;      // a term that was not asked for: not reported
-  bool confounded = false;  // held at 0, as an offset that is fitted says the same
-  bool assumed = false;     // held, not where the file has its zero, but where the record begins
+  bool started_by_user = false;  // θ is where the search starts
+  bool absent = false;           // a term that was not asked for: not reported
+  bool confounded = false;       // held at 0, as an offset that is fitted says the same
+  bool assumed = false;  // held, not where the file has its zero, but where the record begins
 
   /// θ of a prior, and the root weight of θ's difference from it as one more residual; 0 without
   /// a prior.
@@ -123,8 +120,6 @@ class Parameters {
   /// the force, of which there is one at most; size() where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
   [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
-  /// True if the force's offset of a record is held.
-  [[nodiscard]] bool any_zero_is_known() const;
   /// True if the records are under loads that differ.
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
@@ -136,9 +131,6 @@ class Parameters {
 
   /// Holds one more parameter at θ.
   void Fix(std::size_t i, double theta);
-
-  /// Writes θ where the options have a starting value.
-  bool FindStart(const FitOptions& options, std::size_t i, double& theta) const;
 
   /// σ, α, Tc in SI.
   [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
@@ -152,10 +144,9 @@ class Parameters {
  private:
   void ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise);
   void ApplyPriors(const FitOptions& options, double noise);
-  void RequireNeededTerms() const;
-  void RequireOneMotion() const;
+  void RequireTerms(const ScaledRecords& data) const;
   void HoldConfoundedAsymmetry();
-  void KeepShapeBelowOne(const FitOptions& options);
+  void KeepShapeBelowOne();
   void Sort();
   [[nodiscard]] Parameter& Find(std::string_view name);
 

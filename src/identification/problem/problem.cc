@@ -21,26 +21,23 @@ ConstArray ArrayOf(std::span<const double> values) { return {values.data(), std:
 
 }  // namespace
 
-LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
-  const bool is_forced = problem.data->is_forced();
-  return {.log_rate = (is_forced ? 0.0 : theta[kStiffness]) - theta[kSlipForce],
-          .shape = theta[kShape],
-          .log_travel = problem.parameters.has_rig() ? theta[kSlipForce] - theta[kRig] : 0.0,
-          .load_exponent = problem.parameters.LoadExponentAt(theta),
-          .theta = theta};
-}
-
 double LogScaleAt(const Problem& problem, std::span<const double> theta) {
   const bool is_forced = problem.data->is_forced();
   return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
-models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
+bool ShapesColumns(const Problem& problem, std::size_t parameter) {
+  return !problem.parameters[parameter].term->shapes.empty();
+}
+
+models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
                                const ScaledRecord& record) {
-  const bool has_rig = problem.parameters.has_rig();
-  return {.rate = std::exp(at.log_rate + (at.load_exponent - 1) * record.log_load),
-          .shape_exponent = at.shape,
-          .spring_travel = has_rig ? std::exp(at.log_travel + record.log_load) : 0.0};
+  const double exponent = problem.parameters.LoadExponentAt(theta);
+  const double log_travel = theta[kSlipForce] - theta[kRig] + record.log_load;
+  return {
+      .rate = std::exp(theta[kStiffness] - theta[kSlipForce] + (exponent - 1) * record.log_load),
+      .shape_exponent = theta[kShape],
+      .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
 }
 
 std::vector<std::span<double>> ResponseColumns::Wanted() const {
@@ -58,31 +55,6 @@ ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) cons
   return part;
 }
 
-Dependence DependenceOn(const Problem& problem, std::size_t parameter) {
-  const Parameter& of = problem.parameters[parameter];
-  const TermId id = of.term->id;
-  const bool is_forced = problem.data->is_forced();
-  if (of.absent) return {parameter};
-  // t depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
-  switch (id) {
-    case TermId::kSigma:
-      if (is_forced) return {parameter, {{.factor = -1.0}}};
-      return {parameter, {{.column = id}}};
-    case TermId::kSlipForce: {
-      Dependence on{parameter, {{}, {.column = TermId::kSigma, .factor = -1.0}}};
-      if (problem.parameters.has_rig()) on.summands.push_back({.column = TermId::kRigStiffness});
-      return on;
-    }
-    case TermId::kRigStiffness:
-      return {parameter, {{.column = id, .factor = -1.0}}};
-    case TermId::kLoadExponent:
-      return {parameter, {{.column = TermId::kSigma, .by_log_load = true}}};
-    default:
-      if (of.term->is_linear || ShapesColumns(problem, parameter)) return {parameter};
-      return {parameter, {{.column = id}}};
-  }
-}
-
 namespace {
 
 /// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
@@ -96,6 +68,12 @@ bool HasPathAsymmetry(const Problem& problem) {
 bool IsStateOfJoint(const Problem& problem, const ScaledRecord& record) {
   return problem.model->memory == models::Memory::kNone &&
          (!record.load_ratio.empty() || !problem.parameters[RowOf(TermId::kAsymmetry)].absent);
+}
+
+/// Returns the branch that a place of a path is on.
+std::int32_t BranchAt(const models::LoadingPath& path, std::size_t place) {
+  const auto run = std::ranges::upper_bound(path.runs, place, {}, &models::BranchRun::end);
+  return run->branch;
 }
 
 double LoadRatioAt(const ScaledRecord& record, std::size_t sample) {
@@ -135,10 +113,7 @@ void Response::Bind(const Problem& problem) {
                           [this](TermId id) { return Has(id); });
   moves_ = problem.parameters.PositionOfMotion();
   has_moved_ = problem.parameters.moves_contact();
-  motions_.clear();
-  for (std::size_t r = 0; has_moved_ && r < records; ++r) {
-    motions_.push_back(MakeMovedSamples(problem.parameters[moves_].term->motion));
-  }
+  motions_.assign(records, {});
 }
 
 models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
@@ -149,32 +124,54 @@ models::InitialContact Response::InitialOf(std::size_t r, std::span<const double
           .asymmetry = HasPathAsymmetry(*problem_) ? problem_->parameters.AsymmetryAt(theta) : 0.0};
 }
 
-double Response::UnitOfAmount(std::size_t r) const {
-  const TermUnits& units = problem_->data->records[r].units;
-  const bool is_in_time = problem_->parameters[moves_].term->motion == ContactMotion::kLate;
-  return is_in_time ? units.half_duration : units.length;
+const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
+  const ScaledRecord& record = problem_->data->records[r];
+  const Parameter& moves = problem_->parameters[moves_];
+  const models::InitialContact initial = InitialOf(r, theta);
+  const bool is_in_time = moves.term->motion == ContactMotion::kLate;
+  const double unit = is_in_time ? record.units.half_duration : record.units.length;
+  const double amount = moves.ToValue(theta[moves_]) / unit;
+  Motion& motion = motions_[r];
+  const bool is_there = !motion.paths.empty() && motion.amount == amount &&
+                        motion.initial.unloaded_displacement == initial.unloaded_displacement &&
+                        motion.initial.asymmetry == initial.asymmetry;
+  if (!is_there) {
+    motion = Move(record, moves.term->motion, amount, problem_->model->memory, initial);
+  }
+  return motion;
 }
 
-MovedSamples& Response::MovedOf(std::size_t r, std::span<const double> theta) {
-  const double amount = problem_->parameters[moves_].ToValue(theta[moves_]) / UnitOfAmount(r);
-  motions_[r]->MoveTo(problem_->data->records[r], amount, problem_->model->memory,
-                      InitialOf(r, theta));
-  return *motions_[r];
-}
-
-MovedSamples& Response::MovedUnderForces(const LawPoint& at, std::size_t r) {
-  MovedSamples& moved = MovedOf(r, at.theta);
-  std::vector<double> t(moved.displacement().size());
-  response_.Evaluate(*problem_->model, LawUnder(*problem_, at, problem_->data->records[r]),
-                     moved.path(), moved.displacement(), t);
-  moved.TakeForces(t);
-  return moved;
+std::vector<const MovedPath*> Response::BearingPaths(const Motion& motion,
+                                                     const models::NormalizedLaw& law) {
+  std::vector<const MovedPath*> bearing(motion.paths.front().samples.size());
+  if (motion.paths.size() == 1) {
+    std::ranges::fill(bearing, &motion.paths.front());
+    return bearing;
+  }
+  std::vector<double> t(bearing.size());
+  for (const double sign : {-1.0, 1.0}) {
+    const MovedPath& side = motion.paths[sign > 0 ? 0 : 1];
+    response_.Evaluate(*problem_->model, law, side.path, side.displacement, t);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      if (sign * t[i] >= 0) bearing[i] = &side;
+    }
+  }
+  return bearing;
 }
 
 const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const double> theta) {
   CachedPath& cached = paths_[r];
   if (has_moved_) {
-    MovedUnderForces(PointAt(*problem_, theta), r).CopyPathOfSamples(cached.path);
+    const Motion& motion = MotionOf(r, theta);
+    const models::NormalizedLaw law = LawUnder(*problem_, theta, problem_->data->records[r]);
+    cached.path = motion.paths.front().path;
+    cached.path.runs.clear();
+    for (const MovedPath* side : BearingPaths(motion, law)) {
+      const std::size_t i = cached.path.runs.size();
+      const MovedPath& on = side != nullptr ? *side : motion.paths.front();
+      cached.path.runs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1),
+                                  BranchAt(on.path, on.samples[i])});
+    }
     return cached.path;
   }
   const models::InitialContact initial = InitialOf(r, theta);
@@ -188,34 +185,44 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
   return cached.path;
 }
 
-void Response::Evaluate(const LawPoint& at, std::span<double> t) { Differentiate(at, t, {}); }
+void Response::Evaluate(std::span<const double> theta, std::span<double> t) {
+  Differentiate(theta, t, {});
+}
 
-void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
+void Response::DifferentiateByOrigins(std::span<const double> theta, std::size_t r,
                                       models::OriginSensitivity& sensitivity) {
   const ScaledRecord& record = problem_->data->records[r];
-  const models::NormalizedLaw law = LawUnder(*problem_, at, record);
+  const models::NormalizedLaw law = LawUnder(*problem_, theta, record);
   if (has_moved_) {
-    const MovedSamples& moved = MovedUnderForces(at, r);
-    response_.DifferentiateByOrigins(*problem_->model, law, moved.path(), moved.displacement(),
-                                     sensitivity);
-    for (auto* column : {&sensitivity.sample_slope, &sensitivity.sample_gain}) {
-      moved.Gather(*column, std::span(*column).first(record.size()));
-      column->resize(record.size());
+    const Motion& motion = MotionOf(r, theta);
+    const std::vector<const MovedPath*> bearing = BearingPaths(motion, law);
+    std::vector<double> slope(record.size());
+    std::vector<double> gain(record.size());
+    for (const MovedPath& side : motion.paths) {
+      response_.DifferentiateByOrigins(*problem_->model, law, side.path, side.displacement,
+                                       sensitivity);
+      for (std::size_t i = 0; i < record.size(); ++i) {
+        if (bearing[i] != &side) continue;
+        slope[i] = sensitivity.sample_slope[side.samples[i]];
+        gain[i] = sensitivity.sample_gain[side.samples[i]];
+      }
     }
+    sensitivity.sample_slope = std::move(slope);
+    sensitivity.sample_gain = std::move(gain);
   } else {
-    response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, at.theta),
-                                     record.displacement, sensitivity);
+    response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, theta), record.displacement,
+                                     sensitivity);
   }
   const bool is_state = IsStateOfJoint(*problem_, record);
   std::vector<double> state(is_state ? record.size() : 0);
-  if (is_state) DifferentiatePath(at, r, state, {});
+  if (is_state) DifferentiatePath(theta, r, state, {});
   Eigen::ArrayXd slip_factors = Eigen::ArrayXd::Ones(std::ssize(record.displacement));
-  if (slip_varies_) slip_factors = SlipOf(record, at).factor;
+  if (slip_varies_) slip_factors = SlipOf(record, theta).factor;
   for (std::size_t i = 0; i < record.size(); ++i) {
     double factor = slip_factors[static_cast<Eigen::Index>(i)];
     if (is_state) {
       factor *= models::JointForceSlope(state[i], LoadRatioAt(record, i),
-                                        problem_->parameters.AsymmetryAt(at.theta));
+                                        problem_->parameters.AsymmetryAt(theta));
     }
     sensitivity.sample_slope[i] *= factor;
     sensitivity.sample_gain[i] *= factor;
@@ -228,65 +235,69 @@ models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) 
           HasPathAsymmetry(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
 }
 
-void Response::DifferentiatePath(const LawPoint& at, std::size_t r, std::span<double> t,
+void Response::DifferentiatePath(std::span<const double> theta, std::size_t r, std::span<double> t,
                                  const ResponseColumns& columns) {
   const ScaledRecord& record = problem_->data->records[r];
   if (has_moved_) {
-    DifferentiateMoved(at, r, t, columns);
+    DifferentiateMoved(theta, r, t, columns);
   } else if (record.imposed == loop::Channel::kForce) {
-    DifferentiateForced(at, r, t, columns);
+    const models::ForcedLaw law{.slip_force = std::exp(theta[kSlipForce]),
+                                .shape_exponent = theta[kShape]};
+    const bool is_below_slip = displacement_.Evaluate(
+        *problem_->model, law, PathOf(r, theta), record.excitation(), t,
+        {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
+    if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
   } else if (!record.load_ratio.empty() && HasPathAsymmetry(*problem_)) {
-    loaded_response_.Evaluate(LawUnder(*problem_, at, record), histories_[r],
-                              at.theta[problem_->parameters.PositionOfOrigin(r)], t,
+    loaded_response_.Evaluate(LawUnder(*problem_, theta, record), histories_[r],
+                              theta[problem_->parameters.PositionOfOrigin(r)], t,
                               GradientOf(columns));
   } else {
-    response_.Evaluate(*problem_->model, LawUnder(*problem_, at, record), PathOf(r, at.theta),
+    response_.Evaluate(*problem_->model, LawUnder(*problem_, theta, record), PathOf(r, theta),
                        record.displacement, t, GradientOf(columns));
   }
 }
 
-/// Differentiates the response of one record whose force is imposed.
-void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
-                                   const ResponseColumns& columns) {
-  const models::ForcedLaw law{.slip_force = std::exp(-at.log_rate), .shape_exponent = at.shape};
-  const bool is_below_slip = displacement_.Evaluate(
-      *problem_->model, law, PathOf(r, at.theta), problem_->data->records[r].excitation(), t,
-      {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
-  if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
-}
-
-void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<double> t,
+void Response::DifferentiateMoved(std::span<const double> theta, std::size_t r, std::span<double> t,
                                   const ResponseColumns& columns) {
-  const models::NormalizedLaw law = LawUnder(*problem_, at, problem_->data->records[r]);
-  MovedSamples& moved = MovedOf(r, at.theta);
-  const std::size_t places = moved.displacement().size();
   constexpr std::array kOfPath = {TermId::kSigma, TermId::kAlpha, TermId::kDisplacementOffset,
                                   TermId::kRigStiffness, TermId::kAsymmetry};
-  std::vector<double> storage((1 + kOfPath.size()) * places);
-  const std::span<double> forces = std::span(storage).first(places);
-  ResponseColumns at_places;
-  for (std::size_t k = 0; k < kOfPath.size(); ++k) {
-    if (columns[kOfPath[k]].empty()) continue;
-    at_places[kOfPath[k]] = std::span(storage).subspan((1 + k) * places, places);
-  }
-  const models::NormalizedGradient gradient = GradientOf(at_places);
-  response_.Evaluate(*problem_->model, law, moved.path(), moved.displacement(), forces, gradient);
-  moved.TakeForces(forces);
-  moved.Gather(forces, t);
-  for (const TermId id : kOfPath) {
-    if (!columns[id].empty()) moved.Gather(at_places[id], columns[id]);
+  const models::NormalizedLaw law = LawUnder(*problem_, theta, problem_->data->records[r]);
+  const Motion& motion = MotionOf(r, theta);
+  const std::vector<const MovedPath*> bearing = BearingPaths(motion, law);
+  for (const MovedPath& side : motion.paths) {
+    const std::size_t places = side.displacement.size();
+    std::vector<double> storage((1 + kOfPath.size()) * places);
+    const std::span<double> forces = std::span(storage).first(places);
+    ResponseColumns at_places;
+    for (std::size_t k = 0; k < kOfPath.size(); ++k) {
+      if (columns[kOfPath[k]].empty()) continue;
+      at_places[kOfPath[k]] = std::span(storage).subspan((1 + k) * places, places);
+    }
+    response_.Evaluate(*problem_->model, law, side.path, side.displacement, forces,
+                       GradientOf(at_places));
+    const auto take = [&](std::span<const double> from, std::span<double> to) {
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        if (bearing[i] == &side) to[i] = from[side.samples[i]];
+        if (bearing[i] == nullptr) to[i] = 0.0;  // the gap is being crossed
+      }
+    };
+    take(forces, t);
+    for (const TermId id : kOfPath) take(at_places[id], columns[id]);
   }
   const std::span<double> by_amount = columns[problem_->parameters[moves_].term->id];
   if (by_amount.empty()) return;
-  response_.DifferentiateByOrigins(*problem_->model, law, moved.path(), moved.displacement(),
-                                   sensitivity_);
-  moved.DifferentiateByAmount(sensitivity_, forces);
-  moved.Gather(forces, by_amount);
-  const double per_theta = problem_->parameters[moves_].scale / UnitOfAmount(r);
-  for (double& value : by_amount) value *= per_theta;
+  // The rounding of a difference by this much of θ is 1e-9 of the slip force. It is that of a
+  // longer lag and a wider gap: without either the response has a kink.
+  constexpr double kStep = 1e-7;
+  Motion here = std::move(motions_[r]);
+  std::vector<double> beside(theta.begin(), theta.end());
+  beside[moves_] += kStep;
+  DifferentiateMoved(beside, r, by_amount, {});
+  for (std::size_t i = 0; i < t.size(); ++i) by_amount[i] = (by_amount[i] - t[i]) / kStep;
+  motions_[r] = std::move(here);
 }
 
-void Response::Differentiate(const LawPoint& at, std::span<double> t,
+void Response::Differentiate(std::span<const double> theta, std::span<double> t,
                              const ResponseColumns& columns) {
   AskWhetherToGoOn();
   std::size_t begin = 0;
@@ -295,11 +306,11 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
     const ResponseColumns parts = columns.Part(begin, record.size());
     const std::span<double> values = t.subspan(begin, record.size());
     begin += record.size();
-    DifferentiatePath(at, r, values, parts);
+    DifferentiatePath(theta, r, values, parts);
     if (IsStateOfJoint(*problem_, record)) {
-      ReadForceOfJoint(record, problem_->parameters.AsymmetryAt(at.theta), values, parts);
+      ReadForceOfJoint(record, problem_->parameters.AsymmetryAt(theta), values, parts);
     }
-    if (slip_varies_) ScaleBySlipForce(r, at, values, parts);
+    if (slip_varies_) ScaleBySlipForce(r, theta, values, parts);
     if (record.load == 1) continue;
     for (double& value : values) value *= record.load;
     for (const std::span<double> column : parts.Wanted()) {
@@ -308,32 +319,32 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
   }
 }
 
-Response::Slip Response::SlipOf(const ScaledRecord& record, const LawPoint& at) const {
-  const auto theta = [&](TermId id) { return at.theta[RowOf(id)]; };
+Response::Slip Response::SlipOf(const ScaledRecord& record, std::span<const double> theta) const {
+  const auto value = [&](TermId id) { return theta[RowOf(id)]; };
   const ConstArray position = ArrayOf(record.displacement);
   Slip slip;
   slip.factor =
-      1 + (position * (theta(TermId::kSlipSlope) + theta(TermId::kSlipCurvature) * position) +
-           theta(TermId::kSlipTrend) * ArrayOf(record.time));
+      1 + (position * (value(TermId::kSlipSlope) + value(TermId::kSlipCurvature) * position) +
+           value(TermId::kSlipTrend) * ArrayOf(record.time));
   slip.log_speed = Eigen::ArrayXd::Zero(position.size());
   slip.change = slip.log_speed;
   if (!record.log_speed.empty()) {
     slip.log_speed = ArrayOf(record.log_speed) - std::log(record.units.reference_speed);
   }
   if (Has(TermId::kSlipSpeed)) {
-    const double exponent = theta(TermId::kSlipSpeedExponent);
+    const double exponent = value(TermId::kSlipSpeedExponent);
     slip.change = slip.log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
-    slip.factor += theta(TermId::kSlipSpeed) * slip.change;
+    slip.factor += value(TermId::kSlipSpeed) * slip.change;
   }
-  if (Has(TermId::kDragFraction)) slip.factor -= theta(TermId::kDragFraction);
+  if (Has(TermId::kDragFraction)) slip.factor -= value(TermId::kDragFraction);
   return slip;
 }
 
-void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<double> response,
-                                const ResponseColumns& columns) const {
+void Response::ScaleBySlipForce(std::size_t r, std::span<const double> theta,
+                                std::span<double> response, const ResponseColumns& columns) const {
   const ScaledRecord& record = problem_->data->records[r];
-  const auto theta = [&](TermId id) { return at.theta[RowOf(id)]; };
-  const Slip slip = SlipOf(record, at);
+  const auto value = [&](TermId id) { return theta[RowOf(id)]; };
+  const Slip slip = SlipOf(record, theta);
   const ConstArray position = ArrayOf(record.displacement);
   Array t(response.data(), std::ssize(response));
   for (const std::span<double> column : columns.Wanted()) {
@@ -347,15 +358,15 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
   set(TermId::kSlipTrend, t * ArrayOf(record.time));
   set(TermId::kSlipSpeed, t * slip.change);
   set(TermId::kSlipSpeedExponent,
-      t * theta(TermId::kSlipSpeed) * slip.log_speed * (1 + slip.change));
+      t * value(TermId::kSlipSpeed) * slip.log_speed * (1 + slip.change));
   if (!Has(TermId::kDragFraction)) {
     t *= slip.factor;
     return;
   }
   // (v/v₀)^m along the motion, which has no memory.
   const Eigen::ArrayXd dragged = ArrayOf(record.velocity) * (-ArrayOf(record.log_speed)).exp() *
-                                 (theta(TermId::kDragExponent) * slip.log_speed).exp();
-  const double drag = theta(TermId::kDragFraction);
+                                 (value(TermId::kDragExponent) * slip.log_speed).exp();
+  const double drag = value(TermId::kDragFraction);
   set(TermId::kDragFraction, dragged - t);
   set(TermId::kDragExponent, drag * dragged * slip.log_speed);
   t = slip.factor * t + drag * dragged;
@@ -413,7 +424,8 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
         wave = phase.sin();
       }
       if (derivative) wave *= (is_sine ? -1.0 : 1.0) * phase;
-      return ((is_up ? 1.0 : -1.0) * ArrayOf(record.direction) > 0).select(wave, 0.0);
+      const std::vector<double> direction = DirectionsOf(record.displacement, record.reversals);
+      return ((is_up ? 1.0 : -1.0) * ArrayOf(direction) > 0).select(wave, 0.0);
     }
     default:
       return Eigen::ArrayXd::Ones(position.size());  // an offset
@@ -423,6 +435,12 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
 bool IsInRecord(const Parameter& parameter, std::size_t record) {
   return !parameter.absent &&
          (parameter.term->scope == Scope::kContact || parameter.record == record);
+}
+
+/// True if t depends on a parameter by a derivative of its own.
+bool EntersResponse(const Problem& problem, std::size_t parameter) {
+  const Parameter& of = problem.parameters[parameter];
+  return !of.absent && !of.term->is_linear && !ShapesColumns(problem, parameter);
 }
 
 }  // namespace
@@ -435,21 +453,17 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
       factor * ColumnOf(problem, parameter, r, theta, /*derivative=*/false);
 }
 
-bool ShapesColumns(const Problem& problem, std::size_t parameter) {
-  return !problem.parameters[parameter].term->shapes.empty();
-}
-
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t r,
-                            std::span<const double> theta, double factor, std::span<double> to) {
+                            std::span<const double> theta, std::span<double> to) {
   const Term& term = *problem.parameters[parameter].term;
-  if (term.is_linear) AddColumn(problem, parameter, r, theta, factor, to);
+  if (term.is_linear) AddColumn(problem, parameter, r, theta, 1.0, to);
   if (term.shapes.empty()) return;
   for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
     const Term& linear = *problem.parameters[q].term;
     const bool is_shaped = linear.is_linear && linear.name.starts_with(term.shapes);
     if (!is_shaped || !IsInRecord(problem.parameters[q], r)) continue;
     Array(to.data(), std::ssize(to)) +=
-        factor * theta[q] * ColumnOf(problem, q, r, theta, /*derivative=*/true);
+        theta[q] * ColumnOf(problem, q, r, theta, /*derivative=*/true);
   }
 }
 
@@ -471,15 +485,6 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   }
 }
 
-/// Puts weighted residuals, model − measured, in the place of the model's response.
-void TakeOffWeighted(const ScaledRecords& data, std::span<double> predicted) {
-  TakeOffMeasured(data, predicted);
-  std::size_t k = 0;
-  for (const ScaledRecord& record : data.records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) predicted[k] *= record.root_weight[i];
-  }
-}
-
 }  // namespace
 
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
@@ -492,62 +497,80 @@ void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> predicted) {
-  response.Evaluate(PointAt(problem, theta), predicted);
+  response.Evaluate(theta, predicted);
   Complete(problem, theta, predicted);
 }
 
-void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
-                      std::span<double> residual) {
-  response.Bind(problem);
-  Predict(problem, theta, response, residual);
-  TakeOffWeighted(*problem.data, residual);
-}
-
-void DifferentiateResponse(const Problem& problem, const LawPoint& at, Response& response,
-                           std::span<const Dependence> dependences, std::span<double> t,
-                           std::span<double> columns) {
+void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
+                           Response& response, std::span<const std::size_t> parameters,
+                           std::span<double> t, std::span<double> columns) {
   const std::size_t samples = problem.size();
-  // Each derivative of t is computed once, for however many parameters.
+  const bool is_forced = problem.data->is_forced();
+  // t depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ. Each
+  // derivative of t is computed once, for however many parameters.
   std::vector<TermId> wanted;
-  for (const Dependence& dependence : dependences) {
-    for (const Sensitivity& summand : dependence.summands) {
-      if (!summand.column || std::ranges::find(wanted, *summand.column) != wanted.end()) continue;
-      wanted.push_back(*summand.column);
+  for (const std::size_t p : parameters) {
+    const TermId id = problem.parameters[p].term->id;
+    const bool is_by_rate = id == TermId::kSlipForce || id == TermId::kLoadExponent;
+    if (is_by_rate) wanted.push_back(TermId::kSigma);
+    if (id == TermId::kSlipForce && problem.parameters.has_rig()) {
+      wanted.push_back(TermId::kRigStiffness);
     }
+    if (!is_by_rate && EntersResponse(problem, p)) wanted.push_back(id);
   }
+  std::ranges::sort(wanted);
+  wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
   const std::span<double> scratch = response.Scratch(wanted.size() * samples);
   ResponseColumns gradient;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     gradient[wanted[k]] = scratch.subspan(k * samples, samples);
   }
-  response.Differentiate(at, t, gradient);
+  response.Differentiate(theta, t, gradient);
   std::ranges::fill(columns, 0.0);
-  for (std::size_t c = 0; c < dependences.size(); ++c) {
-    const Parameter& parameter = problem.parameters[dependences[c].parameter];
-    const std::span<double> column = columns.subspan(c * samples, samples);
+  std::size_t begin = 0;
+  for (const std::size_t p : parameters) {
+    const Parameter& parameter = problem.parameters[p];
     std::size_t end = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
-      const std::size_t begin = std::exchange(end, end + record.size());
+      const std::size_t first = std::exchange(end, end + record.size());
       if (!IsInRecord(parameter, r)) continue;
-      for (const Sensitivity& summand : dependences[c].summands) {
-        const std::span<const double> of = summand.column ? gradient[*summand.column] : t;
-        const double factor = summand.factor * (summand.by_log_load ? record.log_load : 1.0);
-        for (std::size_t i = begin; i < end; ++i) column[i] += factor * of[i];
+      const auto of = [&](TermId id) {
+        return ArrayOf(gradient[id].subspan(first, record.size()));
+      };
+      const ConstArray own = ArrayOf(t.subspan(first, record.size()));
+      Array column(columns.data() + begin + first, own.size());
+      switch (parameter.term->id) {
+        case TermId::kSigma:
+          if (is_forced) {
+            column = -own;
+          } else {
+            column = of(TermId::kSigma);
+          }
+          break;
+        case TermId::kSlipForce:
+          column = own - of(TermId::kSigma);
+          if (problem.parameters.has_rig()) column += of(TermId::kRigStiffness);
+          break;
+        case TermId::kRigStiffness:
+          column = -of(TermId::kRigStiffness);
+          break;
+        case TermId::kLoadExponent:
+          column = record.log_load * of(TermId::kSigma);
+          break;
+        default:
+          if (EntersResponse(problem, p)) column = of(parameter.term->id);
       }
     }
+    begin += samples;
   }
 }
 
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian) {
-  std::vector<Dependence> dependences;
-  dependences.reserve(columns.size());
-  for (const std::size_t p : columns) dependences.push_back(DependenceOn(problem, p));
   // `residual` is t until the rest is added, and what is measured taken off.
-  DifferentiateResponse(problem, PointAt(problem, theta), response, dependences, residual,
-                        jacobian);
+  DifferentiateResponse(problem, theta, response, columns, residual, jacobian);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (double& value : jacobian) value *= scale;
   std::size_t k = 0;
@@ -556,12 +579,22 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
       const ScaledRecord& record = problem.data->records[r];
       const std::span<double> column = jacobian.subspan(k, record.size());
       k += record.size();
-      AddDerivativeOfColumns(problem, p, r, theta, 1.0, column);
+      AddDerivativeOfColumns(problem, p, r, theta, column);
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }
   Complete(problem, theta, residual);
-  TakeOffWeighted(*problem.data, residual);
+  TakeOffMeasured(*problem.data, residual);
+  k = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const double weight : record.root_weight) residual[k++] *= weight;
+  }
+}
+
+void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
+                      std::span<double> residual) {
+  response.Bind(problem);
+  Differentiate(problem, theta, response, {}, residual, {});
 }
 
 }  // namespace mindahl::identification

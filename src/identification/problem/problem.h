@@ -3,12 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "identification/problem/moved_samples.h"
+#include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
@@ -29,24 +28,11 @@ struct Problem {
   [[nodiscard]] std::size_t size() const { return data->samples(); }
 };
 
-/// Holds what the normalized response t depends on, in units of the data: all but its factor.
-struct LawPoint {
-  double log_rate = 0.0;       // ln(σ/Tc); of an imposed force −ln Tc
-  double shape = 0.0;          // α
-  double log_travel = 0.0;     // ln(Tc/k) of the rig; ignored without one
-  double load_exponent = 1.0;  // p; 1 where the records are under one load
-  // All parameters, for where each record is unloaded, the lag and the asymmetry.
-  std::span<const double> theta;
-};
-
-/// Returns the point of the law at θ.
-LawPoint PointAt(const Problem& problem, std::span<const double> theta);
-
 /// Returns the log of the factor of t: ln Tc, or ln(Tc/σ) of a displacement.
 double LogScaleAt(const Problem& problem, std::span<const double> theta);
 
 /// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
-models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
+models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
                                const ScaledRecord& record);
 
 /// Derivatives of t, a column each of all samples, by term: an empty one is not wanted. That of σ
@@ -66,23 +52,6 @@ class ResponseColumns {
   std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> columns_;
 };
 
-/// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where none stands for t itself.
-struct Sensitivity {
-  std::optional<TermId> column = {};
-  double factor = 1.0;
-  bool by_log_load = false;  // times ln(N/N₀) of the record
-};
-
-/// A parameter, or a coordinate in its place, and how scale·t depends on it.
-struct Dependence {
-  std::size_t parameter = 0;
-  std::vector<Sensitivity> summands = {};  // none where t does not depend on it
-};
-
-/// Returns how the response depends on a parameter; without summands for one that is linear, and
-/// for one that the problem does not have.
-Dependence DependenceOn(const Problem& problem, std::size_t parameter);
-
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
 /// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of
 /// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
@@ -91,10 +60,11 @@ Dependence DependenceOn(const Problem& problem, std::size_t parameter);
 class Response {
  public:
   void Bind(const Problem& problem);
-  void Evaluate(const LawPoint& at, std::span<double> t);
-  void Differentiate(const LawPoint& at, std::span<double> t, const ResponseColumns& columns);
+  void Evaluate(std::span<const double> theta, std::span<double> t);
+  void Differentiate(std::span<const double> theta, std::span<double> t,
+                     const ResponseColumns& columns);
   /// Differentiates one record by its branches' starts, for fits of turning points.
-  void DifferentiateByOrigins(const LawPoint& at, std::size_t record,
+  void DifferentiateByOrigins(std::span<const double> theta, std::size_t record,
                               models::OriginSensitivity& sensitivity);
   /// Returns the loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
@@ -111,25 +81,22 @@ class Response {
     Eigen::ArrayXd log_speed;  // ln(v/v₀); far below zero, and finite, where it does not move
     Eigen::ArrayXd change;     // (v/v₀)^m − 1
   };
-  [[nodiscard]] Slip SlipOf(const ScaledRecord& record, const LawPoint& at) const;
+  [[nodiscard]] Slip SlipOf(const ScaledRecord& record, std::span<const double> theta) const;
   /// Differentiates the response of one record by its path, over the slip force of the path.
-  void DifferentiatePath(const LawPoint& at, std::size_t record, std::span<double> t,
+  void DifferentiatePath(std::span<const double> theta, std::size_t record, std::span<double> t,
                          const ResponseColumns& columns);
-  void DifferentiateForced(const LawPoint& at, std::size_t record, std::span<double> t,
-                           const ResponseColumns& columns);
-  void DifferentiateMoved(const LawPoint& at, std::size_t record, std::span<double> t,
+  void DifferentiateMoved(std::span<const double> theta, std::size_t record, std::span<double> t,
                           const ResponseColumns& columns);
   /// Multiplies t and its derivatives by the slip force at each sample, and adds the drag.
-  void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> response,
-                        const ResponseColumns& columns) const;
+  void ScaleBySlipForce(std::size_t record, std::span<const double> theta,
+                        std::span<double> response, const ResponseColumns& columns) const;
   [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
   [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
                                                  std::span<const double> theta) const;
-  /// Returns the unit of the amount by which a record's samples are moved.
-  [[nodiscard]] double UnitOfAmount(std::size_t record) const;
-  MovedSamples& MovedOf(std::size_t record, std::span<const double> theta);
-  /// Returns them as they are under the forces at this point.
-  MovedSamples& MovedUnderForces(const LawPoint& at, std::size_t record);
+  const Motion& MotionOf(std::size_t record, std::span<const double> theta);
+  /// Returns the path that bears the force of each sample; null while a gap is crossed.
+  std::vector<const MovedPath*> BearingPaths(const Motion& motion,
+                                             const models::NormalizedLaw& law);
   [[nodiscard]] bool Has(TermId id) const { return !problem_->parameters[RowOf(id)].absent; }
 
   struct CachedPath {
@@ -146,8 +113,7 @@ class Response {
   // For a problem with a term that moves the contact:
   std::size_t moves_ = 0;  // its position
   bool has_moved_ = false;
-  std::vector<std::unique_ptr<MovedSamples>> motions_;  // of each record
-  models::OriginSensitivity sensitivity_;
+  std::vector<Motion> motions_;                   // of each record
   std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
   models::NormalizedLoadedResponse loaded_response_;
 };
@@ -173,18 +139,19 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record
 /// True if columns of linear parameters depend on this one.
 bool ShapesColumns(const Problem& problem, std::size_t parameter);
 
-/// Adds a multiple of ∂(Σ θ_q·column_q)/∂θ by a parameter, without weights: its own column where it
-/// is linear, else those of the columns that it shapes.
+/// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, without weights: its own column where it is linear,
+/// else those of the columns that it shapes.
 /// @param theta  of all parameters, the linear ones included
 /// @param to     of the record's samples
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t record,
-                            std::span<const double> theta, double factor, std::span<double> to);
+                            std::span<const double> theta, std::span<double> to);
 
-/// Computes t and the derivatives of scale·t over the scale, of all samples, without weights.
-/// @param columns  column-major, size() × dependences.size()
-void DifferentiateResponse(const Problem& problem, const LawPoint& at, Response& response,
-                           std::span<const Dependence> dependences, std::span<double> t,
-                           std::span<double> columns);
+/// Computes t and the derivatives of scale·t by parameters over the scale, of all samples, without
+/// weights; those by linear ones are 0.
+/// @param columns  column-major, size() × parameters.size()
+void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
+                           Response& response, std::span<const std::size_t> parameters,
+                           std::span<double> t, std::span<double> columns);
 
 /// Computes the weighted residuals, model − measured, and their derivatives by the parameters at
 /// `columns`. The response is bound to the problem.

@@ -18,10 +18,8 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 /// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
 void RequireToldAsymmetry(const Problem& problem);
 
-/// Refuses a rig that is given and softer than the loop itself: in series with it no contact,
-/// however stiff, makes the record. The loop's stiffness [N/m] is the steepest of the chords from a
-/// reversal to a tenth, two tenths, … of the main strokes' way, each the mean over the strokes;
-/// that to their end is T*/X.
+/// Refuses a rig that is given and softer than the loop itself from end to end, T*/X: in series
+/// with it no contact, however stiff, makes the record.
 void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRecords& records);
 
 }  // namespace mindahl::identification

@@ -4,13 +4,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/extremes.h"
-#include "identification/problem/moved_samples.h"
+#include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
@@ -83,7 +84,7 @@ std::vector<double> DerivativeOf(const std::vector<double>& values, const Scaled
 
 /// ln of the speeds with their resolution; far below any speed, and finite, where there is none.
 void FillLogSpeed(ScaledRecord& record) {
-  const double resolution = record.units.speed_resolution;
+  const double resolution = loop::NoiseByDifferences(record.velocity, 4);
   const auto [lowest, highest] = ExtremesOf(record.velocity);
   constexpr double kStandstill = 1e-12;  // of the largest speed
   const double fastest = std::max(-lowest, highest);
@@ -111,51 +112,23 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
   return sum > 0 ? sum / path : 1.0;
 }
 
-/// True if a sample counts for the load of a record; cycles that are only held out do.
-bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOptions& options,
-               std::size_t r, std::size_t sample) {
-  if (record.counts[sample] != 0) return true;
-  if (r >= options.held_out.size() || options.held_out[r].empty()) return false;
-  const double load = record.record.normal_load[sample];
-  const bool is_in_window = !options.load_window || (load >= options.load_window->lower &&
-                                                     load <= options.load_window->upper);
-  return options.held_out[r][sample] && is_in_window;
-}
-
 struct MeasuredLoad {
   double mean = 0.0;       // [N]
   double amplitude = 0.0;  // [N] of a sine of the same standard deviation, but for white noise
   double magnitude = 0.0;  // [N], mean of |N|
 };
 
-MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
-                         const loop::PreparationOptions& options, std::size_t r) {
-  const std::span<const double> load = record.record.normal_load;
-  double sum = 0.0;
-  double magnitude = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < load.size(); ++i) {
-    if (!TellsLoad(record, options, r, i)) continue;
-    sum += load[i];
-    magnitude += std::abs(load[i]);
-    ++count;
+/// Measures the load of the samples that count.
+MeasuredLoad MeasureLoad(const loop::PreparedRecord& record) {
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.counts[i] != 0) counted.push_back(record.record.normal_load[i]);
   }
-  if (count == 0) return {};
-  const double mean = sum / count;
-  double squares = 0.0;
-  double steps = 0.0;  // squared, from one sample to the next
-  double step_count = 0.0;
-  for (std::size_t i = 0; i < load.size(); ++i) {
-    if (!TellsLoad(record, options, r, i)) continue;
-    squares += (load[i] - mean) * (load[i] - mean);
-    if (i == 0 || !TellsLoad(record, options, r, i - 1)) continue;
-    steps += (load[i] - load[i - 1]) * (load[i] - load[i - 1]);
-    ++step_count;
-  }
-  // White noise of the readings has half the mean squared step for its variance; what varies
-  // smoothly hardly steps.
-  const double noise = step_count > 0 ? steps / (2 * step_count) : 0.0;
-  return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0)), magnitude / count};
+  if (counted.empty()) return {};
+  const Eigen::Map<const Eigen::ArrayXd> load(counted.data(), std::ssize(counted));
+  const double noise = loop::NoiseByDifferences(counted, 1);
+  const double variance = (load - load.mean()).square().mean() - noise * noise;
+  return {load.mean(), std::sqrt(2 * std::max(variance, 0.0)), load.abs().mean()};
 }
 
 /// True for Dahl's own law, whose force follows a load of either sign (models/joint_friction.h).
@@ -200,7 +173,7 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
     const loop::PreparedRecord& record = records.records[r];
     MeasuredLoad measured;
     if (!record.record.normal_load.empty()) {
-      measured = MeasureLoad(record, options.preparation, r);
+      measured = MeasureLoad(record);
       const bool has_sign = HasStateOfJoint(options) && KnowsVaryingLoads(options);
       const bool is_reversed = has_sign && measured.mean < 0;
       if (has_sign) measured.mean = measured.magnitude;
@@ -238,19 +211,6 @@ const loop::Covariate* FindCovariate(const loop::RecordView& record, std::string
   return found == record.covariates.end() ? nullptr : &*found;
 }
 
-/// Returns half the largest range that a column has in a record.
-double CovariateScale(std::string_view name, const loop::PreparedRecords& records) {
-  double scale = 0.0;
-  for (std::size_t r = 0; r < records.records.size(); ++r) {
-    const loop::Covariate* covariate = FindCovariate(records.records[r].record, name);
-    if (covariate == nullptr) {
-      throw InvalidArgument(fmt::format("record {} has no covariate '{}'", r + 1, name));
-    }
-    scale = std::max(scale, RangeOf(covariate->values).half);
-  }
-  return scale;
-}
-
 }  // namespace
 
 std::size_t ScaledRecord::CountTurns() const {
@@ -269,9 +229,8 @@ ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
   };
   for (const auto column :
        {&ScaledRecord::displacement, &ScaledRecord::force, &ScaledRecord::time,
-        &ScaledRecord::velocity, &ScaledRecord::acceleration, &ScaledRecord::direction,
-        &ScaledRecord::log_speed, &ScaledRecord::load_ratio, &ScaledRecord::load_change,
-        &ScaledRecord::root_weight, &ScaledRecord::clock}) {
+        &ScaledRecord::velocity, &ScaledRecord::acceleration, &ScaledRecord::log_speed,
+        &ScaledRecord::load_ratio, &ScaledRecord::load_change, &ScaledRecord::root_weight}) {
     take(some.*column, this->*column);
   }
   take(some.counts, counts);
@@ -376,27 +335,18 @@ std::vector<double> DirectionsOf(std::span<const double> excitation,
 namespace {
 
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
-  const bool asks_slip_speed =
-      HasTerm(options, TermId::kSlipSpeedExponent) || HasTerm(options, TermId::kDragExponent);
-  const bool asks_power = HasTerm(options, TermId::kSpeedExponent) || asks_slip_speed;
-  const bool asks_direction = std::ranges::any_of(Terms(), [&](const Term& term) {
-    return term.id >= TermId::kRipplePeriod && term.id <= TermId::kRippleSineDown &&
-           HasTerm(options, term.name);
-  });
+  const bool asks_speed = std::ranges::any_of(
+      std::array{TermId::kSpeedExponent, TermId::kSlipSpeedExponent, TermId::kDragExponent},
+      [&](TermId id) { return HasTerm(options, id); });
   const double unit = data.records.front().units.half_duration;
   for (ScaledRecord& record : data.records) {
-    if (asks_power && !record.velocity.empty()) {
-      record.units.speed_resolution = loop::NoiseByDifferences(record.velocity, 4);
-      FillLogSpeed(record);
-    }
-    if (HasTerm(options, TermId::kInertia) && !record.velocity.empty()) {
+    if (record.velocity.empty()) continue;
+    if (asks_speed) FillLogSpeed(record);
+    if (HasTerm(options, TermId::kInertia)) {
       record.acceleration = DerivativeOf(record.velocity, record, unit);
     }
-    if (asks_direction) record.direction = DirectionsOf(record.displacement, record.reversals);
   }
-  if (HasTerm(options, TermId::kLag)) SetClocks(data);
-  if (!asks_slip_speed) return;
-  const double reference = SpeedInTheMiddle(data);
+  const double reference = asks_speed ? SpeedInTheMiddle(data) : 1.0;
   for (ScaledRecord& record : data.records) record.units.reference_speed = reference;
 }
 
@@ -405,49 +355,52 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
 void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
                 ScaledRecords& data) {
   AddColumnsOfTerms(options, data);
-  const std::vector<std::string>& fitted = options.covariates;
-  const loop::RecordView& first = records.records.front().record;
-  const auto add = [&](std::string_view name, double scale) {
-    const loop::Covariate& covariate = *FindCovariate(first, name);
-    data.covariates.push_back({.name = covariate.name, .unit = covariate.unit, .scale = scale});
-    for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const std::vector<double>& values = FindCovariate(records.records[r].record, name)->values;
-      const double reference = options.offsets ? RangeOf(values).middle : 0.0;
-      auto& column = data.records[r].covariates.emplace_back();
-      column.reserve(values.size());
-      for (const double value : values) column.push_back((value - reference) / scale);
+  std::vector<std::string> names = options.covariates;
+  for (const loop::Covariate& other : records.records.front().record.covariates) {
+    const bool is_new = std::ranges::find(names, other.name) == names.end();
+    if (with_others && is_new) names.push_back(other.name);
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const bool is_fitted = k < options.covariates.size();
+    std::vector<const loop::Covariate*> columns;
+    double scale = 0.0;
+    for (const loop::PreparedRecord& record : records.records) {
+      const loop::Covariate* const column = FindCovariate(record.record, names[k]);
+      if (column != nullptr) {
+        scale = std::max(scale, RangeOf(column->values).half);
+      } else if (is_fitted) {
+        throw InvalidArgument(
+            fmt::format("record {} has no covariate '{}'", columns.size() + 1, names[k]));
+      }
+      columns.push_back(column);
     }
-  };
-  for (const std::string& name : fitted) {
-    const double scale = CovariateScale(name, records);
-    RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
-    add(name, scale);
-    const std::size_t last = data.covariates.size() - 1;
+    if (is_fitted) RequireScale(fmt::format("half range of the covariate '{}'", names[k]), scale);
+    const bool is_complete =
+        std::ranges::none_of(columns, [](auto* column) { return column == nullptr; });
+    if (!is_complete || !(scale >= kSmallestScale && scale <= kLargestScale)) continue;
+    const std::size_t last = data.covariates.size();
+    data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      const double reference = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
+      std::vector<double>& column = data.records[r].covariates.emplace_back();
+      for (const double value : columns[r]->values) column.push_back((value - reference) / scale);
+    }
+    if (!is_fitted) continue;
     const bool is_force = std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
       return AreOneChannel(record.covariates[last], record.force);
     });
-    if (is_force && !options.fixed.contains(NameOfCovariate(name))) {
+    if (is_force && !options.fixed.contains(NameOfCovariate(names[k]))) {
       throw InvalidArgument(fmt::format(
           "the covariate '{}' is the channel of the force, a linear function of it: leave it out",
-          name));
+          names[k]));
     }
     for (std::size_t other = 0; other < last; ++other) {
       if (!AreOneChannel(data, other, last)) continue;
       throw InvalidArgument(fmt::format(
           "the covariates '{}' and '{}' are one channel, the one a linear function of the other: "
           "name one of them",
-          fitted[other], name));
+          names[other], names[k]));
     }
-  }
-  if (!with_others) return;
-  for (const loop::Covariate& covariate : first.covariates) {
-    if (std::ranges::find(fitted, covariate.name) != fitted.end()) continue;
-    const bool all_have_it = std::ranges::all_of(records.records, [&](const auto& record) {
-      return FindCovariate(record.record, covariate.name) != nullptr;
-    });
-    if (!all_have_it) continue;
-    const double scale = CovariateScale(covariate.name, records);
-    if (scale >= kSmallestScale && scale <= kLargestScale) add(covariate.name, scale);
   }
 }
 
@@ -487,7 +440,7 @@ const ScaledRecords& ThinnedRecords::Get() {
     }
     ScaledRecord& thin = thin_->records[r] = record.At(samples);
     thin.reversals = std::move(turns);
-    if (!record.clock.empty()) thin.whole = &record;
+    thin.whole = &record;
     for (const unsigned char counts : thin.counts) thin_->counted += counts;
   }
   return *thin_;

@@ -19,8 +19,6 @@ struct ScaledRecord {
   std::vector<double> time;          // −1 … 1 over the record; by sample where it has no time
   std::vector<double> velocity;      // in the first record's time; empty where there is none
   std::vector<double> acceleration;  // likewise; empty unless a term asks for it
-  /// +1 in strokes of growing displacement, −1 in others; empty unless a term asks for it.
-  std::vector<double> direction;
   /// ln of the speed, in units of `velocity`, with its resolution; empty unless a term asks for it.
   std::vector<double> log_speed;
   /// N over its mean, where the law knows that it varies: empty where it is taken as constant.
@@ -28,14 +26,12 @@ struct ScaledRecord {
   std::vector<double> load_change;    // N over its mean less 1, where it varies and is not known
   std::vector<double> root_weight;    // of each residual; 0 where the sample does not count
   std::vector<unsigned char> counts;  // 1 where the sample counts, else 0
-  /// Time that always goes on, in which a lag is counted; empty where no lag is asked for.
-  std::vector<double> clock;
   /// Those of ScaledRecords::covariates, over half their range; empty where there are none.
   std::vector<std::vector<double>> covariates;
   /// The channel that is imposed, of those two; the other one answers, and is fitted.
   loop::Channel imposed = loop::Channel::kDisplacement;
   std::vector<std::size_t> reversals;  // samples
-  /// The record that this one has some samples of, where a lag needs its motion; else null.
+  /// The record that this one has some samples of, of whose motion a lag is; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;
   double load = 1.0;      // mean of N over that of all records; 1 where they are not a load series
@@ -110,7 +106,7 @@ struct ScaledRecords {
 ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options);
 
 /// Adds the columns that the options' terms need beyond those of every fit (accelerations,
-/// directions of strokes, speeds, clocks), and covariates: each less the middle of its range in the
+/// speeds), and covariates: each less the middle of its range in the
 /// record, so that the offset of the force keeps its meaning; literally where there are no offsets.
 /// @param with_others  also the covariates that no term is fitted to, where they change and all
 ///   records have them

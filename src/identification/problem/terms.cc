@@ -51,6 +51,35 @@ constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning) {
   return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .is_linear = true};
 }
 
+/// Makes a change of the slip force over the position or time.
+constexpr Term SlipChange(std::string_view name, std::string_view meaning, std::string_view group) {
+  return {.name = name,
+          .meaning = meaning,
+          .lowest = -kLargestSlipChange,
+          .highest = kLargestSlipChange,
+          .longest_step = 0.25,
+          .has_start = true,
+          .group = group};
+}
+
+/// Makes an exponent of the speed, of a force that another term scales.
+constexpr Term Exponent(std::string_view name, std::string_view meaning, std::string_view needs,
+                        std::string_view group, double lowest, TheoryBound theory_bound,
+                        std::string_view shapes = {}) {
+  return {.name = name,
+          .meaning = meaning,
+          .lowest = lowest,
+          .highest = 1.0,
+          .longest_step = 0.25,
+          .needs_time = true,
+          .has_start = true,
+          .start = 0.5,
+          .shapes = shapes,
+          .needs = needs,
+          .theory_bound = theory_bound,
+          .group = group};
+}
+
 constexpr std::array kTermRows = {
     Term{.name = "sigma",
          .unit = "N/m",
@@ -109,19 +138,10 @@ constexpr std::array kTermRows = {
          .needs_time = true,
          .is_never_negative = true,
          .group = "viscous"},
-    Term{.name = "speed_exponent",
-         .meaning =
+    Exponent("speed_exponent",
              "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
              "the viscous force",
-         .lowest = kLeastSpeedExponent,
-         .highest = 1.0,
-         .longest_step = 0.2,
-         .needs_time = true,
-         .has_start = true,
-         .start = 0.5,
-         .shapes = "viscous",
-         .needs = "viscous",
-         .group = "speed_exponent"},
+             "viscous", "speed_exponent", kLeastSpeedExponent, TheoryBound::kNone, "viscous"),
     Term{.name = "inertia",
          .unit = "kg",
          .meaning = "M of an additional force M·d²δ/dt²",
@@ -130,20 +150,11 @@ constexpr std::array kTermRows = {
          .needs_time = true,
          .is_never_negative = true,
          .group = "inertia"},
-    Term{.name = "slip_slope",
-         .meaning = "m₁ of a slip force Tc(1 + m₁ξ + m₂ξ²), ξ the position, ±1 at the ends of the "
-                    "widest stroke",
-         .lowest = -kLargestSlipChange,
-         .highest = kLargestSlipChange,
-         .longest_step = 0.25,
-         .has_start = true,
-         .group = "slip_position"},
-    Term{.name = "slip_curvature",
-         .meaning = "m₂, likewise",
-         .lowest = -kLargestSlipChange,
-         .highest = kLargestSlipChange,
-         .longest_step = 0.25,
-         .has_start = true},
+    SlipChange("slip_slope",
+               "m₁ of a slip force Tc(1 + m₁ξ + m₂ξ²), ξ the position, ±1 at the ends of the "
+               "widest stroke",
+               "slip_position"),
+    SlipChange("slip_curvature", "m₂, likewise", ""),
     Term{.name = "slip_speed",
          .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
                     "third of the strokes, at which Tc is that of the fit",
@@ -155,25 +166,13 @@ constexpr std::array kTermRows = {
          .start = 0.3,
          .needs = "slip_speed_exponent",
          .theory_bound = TheoryBound::kUpper},
-    Term{.name = "slip_speed_exponent",
-         .meaning = "m, likewise",
-         .lowest = kLeastSlipSpeedExponent,
-         .highest = 1.0,
-         .longest_step = 0.25,
-         .needs_time = true,
-         .has_start = true,
-         .start = 0.5,
-         .needs = "slip_speed",
-         .theory_bound = TheoryBound::kLower,
-         .group = "slip_speed"},
-    Term{.name = "slip_trend",
-         .meaning = "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 "
-                    "at its end; the sample's number where there is no time",
-         .lowest = -kLargestSlipChange,
-         .highest = kLargestSlipChange,
-         .longest_step = 0.25,
-         .has_start = true,
-         .group = "slip_trend"},
+    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", "slip_speed",
+             kLeastSlipSpeedExponent, TheoryBound::kLower),
+    SlipChange(
+        "slip_trend",
+        "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 at its "
+        "end; the sample's number where there is no time",
+        "slip_trend"),
     Term{.name = "drag_fraction",
          .meaning = "d of a force Tc((1 − d)·t + d(v/v₀)^m) whose part d acts along the motion and "
                     "has no memory, t the contact's force over Tc, v₀ as for slip_speed",
@@ -185,16 +184,8 @@ constexpr std::array kTermRows = {
          .start = 0.3,
          .needs = "drag_exponent",
          .theory_bound = TheoryBound::kBoth},
-    Term{.name = "drag_exponent",
-         .meaning = "m, likewise",
-         .lowest = kLeastSpeedExponent,
-         .highest = 1.0,
-         .longest_step = 0.25,
-         .needs_time = true,
-         .has_start = true,
-         .start = 0.5,
-         .needs = "drag_fraction",
-         .theory_bound = TheoryBound::kBoth},
+    Exponent("drag_exponent", "m, likewise", "drag_fraction", "", kLeastSpeedExponent,
+             TheoryBound::kBoth),
     Term{.name = "plateau_curvature",
          .unit = "N/m²",
          .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
@@ -325,7 +316,6 @@ double Term::scale(const TermUnits& units) const {
   times(units.half_duration, powers.time);
   times(units.cycle, powers.cycle);
   times(units.length, powers.length);
-  if (of_column) product /= units.covariate;
   return product;
 }
 

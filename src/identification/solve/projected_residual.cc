@@ -1,6 +1,7 @@
 #include "identification/solve/projected_residual.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,13 +46,6 @@ CompressedResidual::CompressedResidual(const Eigen::MatrixXd& normal,
 
 namespace {
 
-// Bounds of σ/Tc and Tc/k in units of the data: a straight line, and a branch that is vertical; a
-// rigid rig, and one in which the contact is rigid.
-const double kLowestLogRate = std::log(1e-4);
-const double kHighestLogRate = std::log(1e9);
-const double kLowestLogTravel = std::log(1e-9);
-const double kHighestLogTravel = std::log(1e3);
-
 /// Returns ln of the largest force of a steady loop about its middle, below which Tc has no loop.
 double LeastLogSlipForce(const Problem& problem) {
   constexpr double kShortOfSlip = 1e-9;
@@ -76,259 +70,181 @@ void ProjectedResidual::Bind(const Problem& problem, Response& response) {
   problem_ = &problem;
   response_ = &response;
   response.Bind(problem);
-  held_.assign(problem.parameters.size(), 0);
-  for (const std::size_t p : problem.parameters.with_prior()) held_[p] = 1;  // not eliminated
-  theta_.resize(problem.parameters.size());
-  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    theta_[p] = problem.parameters[p].theta;
+  searched_.clear();
+  places_.clear();
+  theta_.clear();
+  for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
+  for (const std::size_t p : problem.parameters.free()) {
+    const Parameter& parameter = problem.parameters[p];
+    const bool is_tied = parameter.has_prior() || parameter.bounded_by_user;
+    if (parameter.term->is_linear && !is_tied) {
+      theta_[p] = 0.0;
+      continue;
+    }
+    theta_[p] = std::clamp(theta_[p], parameter.lower, parameter.upper);
+    places_.push_back(p);
+    searched_.push_back({p, parameter.lower, parameter.upper});
+    if (!is_forced() || p != kSlipForce) continue;
+    searched_.back().lower = std::max(parameter.lower, LeastLogSlipForce(problem));
   }
   response_values_.resize(static_cast<Eigen::Index>(problem.size()));
-  ChooseSearched();
   FactoriseColumns();
 }
 
-bool ProjectedResidual::MovesColumns(std::size_t parameter) const {
-  return ShapesColumns(*problem_, parameter) || problem_->parameters[parameter].term->is_linear;
-}
-
-void ProjectedResidual::ChooseSearched() {
-  const Parameters& parameters = problem_->parameters;
-  const Parameter& stiffness = parameters[kStiffness];
-  const Parameter& slip_force = parameters[kSlipForce];
-  const Parameter& rig = parameters[kRig];
-  const auto is_tied = [](const Parameter& parameter) {
-    return parameter.fixed || parameter.bounded_by_user || parameter.has_prior();
-  };
-  scale_is_linear_ = is_forced()
-                         ? !is_tied(stiffness)
-                         : !slip_force.fixed && !slip_force.has_prior() && !is_tied(stiffness) &&
-                               !(parameters.has_rig() && is_tied(rig));
-  searched_.clear();
-  dependences_.clear();
-  const auto search = [&](std::size_t p, double lower, double upper) {
-    searched_.push_back({.parameter = p, .lower = lower, .upper = upper});
-    Dependence on = DependenceOn(*problem_, p);
-    // Summands proportional to t move the scale, where that is eliminated.
-    if (scale_is_linear_) {
-      std::erase_if(on.summands, [](const Sensitivity& summand) { return !summand.column; });
-    }
-    dependences_.push_back(std::move(on));
-  };
-  const auto eliminate = [&](std::size_t p, double lower, double upper, double LawPoint::*point) {
-    searched_.push_back({.parameter = p, .lower = lower, .upper = upper, .eliminated = point});
-    dependences_.push_back({p, {{.column = parameters[p].term->id}}});
-  };
-  if (scale_is_linear_ && !is_forced()) {
-    eliminate(kStiffness, kLowestLogRate, kHighestLogRate, &LawPoint::log_rate);
-    if (parameters.has_rig()) {
-      eliminate(kRig, kLowestLogTravel, kHighestLogTravel, &LawPoint::log_travel);
-    }
-  }
-  for (const std::size_t p : {kStiffness, kSlipForce, kRig}) {
-    const bool is_eliminated = is_forced() ? scale_is_linear_ && p == kStiffness : scale_is_linear_;
-    if (is_eliminated || parameters[p].fixed) continue;
-    const bool has_least = is_forced() && p == kSlipForce;
-    search(
-        p,
-        has_least ? std::max(slip_force.lower, LeastLogSlipForce(*problem_)) : parameters[p].lower,
-        parameters[p].upper);
-  }
-  for (const std::size_t p : parameters.free()) {
-    const bool is_searched = p == kShape || p >= kLoadExponent;
-    if (!is_searched || (parameters[p].term->is_linear && !parameters[p].has_prior())) continue;
-    search(p, parameters[p].lower, parameters[p].upper);
-  }
+void ProjectedResidual::HoldAt(std::size_t parameter, double theta) {
+  theta_[parameter] = theta;
+  FactoriseColumns();
 }
 
 void ProjectedResidual::FactoriseColumns() {
+  const ScaledRecords& data = *problem_->data;
   const auto size = static_cast<Eigen::Index>(problem_->size());
+  std::vector<std::size_t> eliminated;
+  for (std::size_t p = 0; p < theta_.size(); ++p) {
+    const Parameter& parameter = problem_->parameters[p];
+    const bool is_searched = std::ranges::find(places_, p) != places_.end();
+    if (parameter.term->is_linear && !parameter.fixed && !is_searched) eliminated.push_back(p);
+  }
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated));
   weight_.resize(size);
   measured_.resize(size);
   std::size_t row = 0;
-  for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
-    const ScaledRecord& record = problem_->data->records[r];
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
     std::ranges::copy(record.root_weight, weight_.data() + row);
     std::ranges::copy(record.response(), measured_.data() + row);
     const std::span<double> rows = Writable(measured_).subspan(row, record.size());
     for (std::size_t p = 0; p < theta_.size(); ++p) {
-      const Parameter& parameter = problem_->parameters[p];
-      if (!parameter.term->is_linear || theta_[p] == 0 || (!parameter.fixed && held_[p] == 0))
-        continue;
+      if (!problem_->parameters[p].term->is_linear || theta_[p] == 0) continue;
       AddColumn(*problem_, p, r, theta_, -theta_[p], rows);
+    }
+    for (std::size_t k = 0; k < eliminated.size(); ++k) {
+      double* const column = columns.col(static_cast<Eigen::Index>(k)).data();
+      AddColumn(*problem_, eliminated[k], r, theta_, 1.0, {column + row, record.size()});
     }
     row += record.size();
   }
   measured_.array() *= weight_.array();
-  columns_.Factorise(*problem_, held_, theta_, weight_);
-  measured_products_ = columns_.ProjectOut(measured_);
-  response_products_.setZero(measured_products_.size());
-}
-
-void ProjectedResidual::ReleaseLinear() {
-  bool any = false;
-  for (std::size_t p = 0; p < held_.size(); ++p) {
-    const unsigned char held = problem_->parameters[p].has_prior() ? 1 : 0;
-    any = any || held_[p] != held;
-    held_[p] = held;
+  columns.array().colwise() *= weight_.array();
+  // A column whose part orthogonal to the others is below this fraction of it depends on them.
+  constexpr double kDependent = 1e-12;
+  linear_.clear();
+  basis_.resize(size, 0);
+  triangle_.resize(0, 0);
+  if (!eliminated.empty()) {
+    const Eigen::VectorXd norms = columns.colwise().norm();
+    columns.array().rowwise() /= norms.transpose().array().max(std::numeric_limits<double>::min());
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
+    factors.setThreshold(kDependent);
+    const Eigen::Index rank = factors.rank();
+    basis_ = factors.householderQ() * Eigen::MatrixXd::Identity(size, rank);
+    triangle_ = factors.matrixR().topLeftCorner(rank, rank);
+    for (Eigen::Index k = 0; k < rank; ++k) {
+      const Eigen::Index column = factors.colsPermutation().indices()[k];
+      triangle_.col(k) *= norms[column];
+      linear_.push_back(eliminated[static_cast<std::size_t>(column)]);
+    }
   }
-  if (any) FactoriseColumns();
+  measured_products_ = ProjectOut(measured_);
 }
 
-bool ProjectedResidual::HoldPassed(std::span<double> theta) {
-  for (const std::size_t p : columns_.parameters()) {
-    const Parameter& parameter = problem_->parameters[p];
-    if (theta[p] >= parameter.lower && theta[p] <= parameter.upper) continue;
-    theta[p] = std::clamp(theta[p], parameter.lower, parameter.upper);
-    held_[p] = 1;
-    theta_[p] = theta[p];
-    FactoriseColumns();
-    return true;
+/// Makes a column orthogonal to the basis.
+/// @returns its products with the basis
+Eigen::VectorXd ProjectedResidual::ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const {
+  Eigen::VectorXd products = basis_.transpose() * column;
+  column -= basis_ * products;
+  return products;
+}
+
+/// Writes the linear parameters at the last evaluation; those that depend on others are as held.
+void ProjectedResidual::SolveLinear(std::span<double> theta) const {
+  const Eigen::VectorXd values = triangle_.triangularView<Eigen::Upper>().solve(
+      measured_products_ - scale_ * response_products_);
+  for (std::size_t k = 0; k < linear_.size(); ++k) {
+    theta[linear_[k]] = values[static_cast<Eigen::Index>(k)];
   }
-  return false;
 }
 
-LawPoint ProjectedResidual::PointOf(std::span<const double> u) {
+std::vector<double> ProjectedResidual::Theta() const {
+  std::vector<double> theta = theta_;
+  SolveLinear(theta);
+  return theta;
+}
+
+void ProjectedResidual::MoveTo(std::span<const double> u) {
   bool columns_move = false;
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const std::size_t p = searched_[j].parameter;
-    if (searched_[j].eliminated != nullptr) continue;
-    columns_move = columns_move || (theta_[p] != u[j] && MovesColumns(p));
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const std::size_t p = places_[j];
+    const bool has_column = problem_->parameters[p].term->is_linear || ShapesColumns(*problem_, p);
+    columns_move = columns_move || (has_column && theta_[p] != u[j]);
     theta_[p] = u[j];
   }
   if (columns_move) FactoriseColumns();
-  LawPoint point = PointAt(*problem_, theta_);
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].eliminated != nullptr) point.*searched_[j].eliminated = u[j];
-  }
-  return point;
 }
 
-void ProjectedResidual::Load(std::span<const double> theta, std::span<double> u) const {
-  const LawPoint point = PointAt(*problem_, theta);
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const SearchedParameter& s = searched_[j];
-    const double value = s.eliminated != nullptr ? point.*s.eliminated : theta[s.parameter];
-    u[j] = std::clamp(value, s.lower, s.upper);
-  }
-}
-
-void ProjectedResidual::Store(std::span<const double> u, std::span<double> theta) const {
-  for (const std::size_t p : {kStiffness, kSlipForce, kRig}) {
-    if (problem_->parameters[p].fixed) theta[p] = theta_[p];
-  }
-  const double log_scale = std::log(scale_);
-  if (!is_forced() && !problem_->parameters[kSlipForce].fixed) theta[kSlipForce] = log_scale;
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const SearchedParameter& s = searched_[j];
-    theta[s.parameter] = s.eliminated == &LawPoint::log_rate     ? u[j] + log_scale
-                         : s.eliminated == &LawPoint::log_travel ? log_scale - u[j]
-                                                                 : u[j];
-  }
-  if (is_forced() && scale_is_linear_) theta[kStiffness] = theta[kSlipForce] - log_scale;
-  columns_.Solve(LinearProducts(), theta);
-}
-
-/// Returns the bounds of the factor of t, from those of Tc, or of σ for a displacement.
-std::pair<double, double> ProjectedResidual::BoundsOfScale(double log_rate) const {
-  if (is_forced()) {
-    const Parameter& stiffness = problem_->parameters[kStiffness];
-    return {std::exp(-log_rate - stiffness.upper), std::exp(-log_rate - stiffness.lower)};
-  }
-  const Parameter& slip_force = problem_->parameters[kSlipForce];
-  return {std::exp(slip_force.lower), std::exp(slip_force.upper)};
-}
-
-/// Computes, from t, which is there without weights: projections, its factor and the residual.
+/// Computes the residual from t, which is there without weights.
 /// @returns the sum of squares; infinity where t is that of no displacement
-double ProjectedResidual::Regress(double log_rate, bool is_free, double held_scale) {
+double ProjectedResidual::Regress(double scale) {
   response_values_.array() *= weight_.array();
-  response_products_ = columns_.ProjectOut(response_values_);
-  scale_ = held_scale;
-  scale_is_free_ = false;
-  if (is_free) {
-    const auto [lower, upper] = BoundsOfScale(log_rate);
-    const double square = response_values_.squaredNorm();
-    const double best = square > 0 ? response_values_.dot(measured_) / square : 0.0;
-    scale_ = std::clamp(best, lower, upper);
-    scale_is_free_ = scale_ == best;
-    if (!(best > 0)) scale_ = lower;
-  }
+  response_products_ = ProjectOut(response_values_);
+  scale_ = scale;
   residual_ = scale_ * response_values_ - measured_;
   const double cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta_);
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
 double ProjectedResidual::Evaluate(std::span<const double> u) {
-  const LawPoint point = PointOf(u);
-  response_->Evaluate(point, Writable(response_values_));
-  return Regress(point.log_rate, scale_is_linear_, std::exp(LogScaleAt(*problem_, theta_)));
+  MoveTo(u);
+  response_->Evaluate(theta_, Writable(response_values_));
+  return Regress(std::exp(LogScaleAt(*problem_, theta_)));
 }
 
-double ProjectedResidual::EvaluateFreely(const LawPoint& at, std::span<double> theta) {
-  response_->Evaluate(at, Writable(response_values_));
+double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
+  response_->Evaluate(theta, Writable(response_values_));
+  double cost = Regress(std::exp(LogScaleAt(*problem_, theta)));
   const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
-  const bool fixed = problem_->parameters[of_scale].fixed;
-  const double held = is_forced() ? -at.log_rate - theta_[kStiffness] : theta_[kSlipForce];
-  const double cost = Regress(at.log_rate, !fixed, std::exp(held));
-  if (!fixed && !(response_values_.dot(measured_) > 0)) {
-    return std::numeric_limits<double>::infinity();
+  const Parameter& parameter = problem_->parameters[of_scale];
+  if (!parameter.fixed) {
+    const double best = response_values_.dot(measured_) / response_values_.squaredNorm();
+    if (!(best > 0)) return std::numeric_limits<double>::infinity();
+    const double log_scale = is_forced() ? theta[kSlipForce] - std::log(best) : std::log(best);
+    theta[of_scale] = std::clamp(log_scale, parameter.lower, parameter.upper);
+    scale_ = std::exp(LogScaleAt(*problem_, theta));
+    residual_ = scale_ * response_values_ - measured_;
+    cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta_);
   }
-  if (is_forced()) theta[kSlipForce] = -at.log_rate;
-  theta[of_scale] = is_forced() ? -at.log_rate - std::log(scale_) : std::log(scale_);
-  columns_.Solve(LinearProducts(), theta);
-  return cost;
+  SolveLinear(theta);
+  return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
 double ProjectedResidual::Linearise(std::span<const double> u) {
-  const LawPoint point = PointOf(u);
-  const auto count = static_cast<Eigen::Index>(searched_.size());
+  MoveTo(u);
+  const auto count = static_cast<Eigen::Index>(u.size());
   derivatives_.resize(response_values_.size(), count);
-  DifferentiateResponse(*problem_, point, *response_, dependences_, Writable(response_values_),
+  DifferentiateResponse(*problem_, theta_, *response_, places_, Writable(response_values_),
                         {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
-  const double cost =
-      Regress(point.log_rate, scale_is_linear_, std::exp(LogScaleAt(*problem_, theta_)));
-  DifferentiateColumns();
-  const double square = scale_is_free_ ? response_values_.squaredNorm() : 0.0;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    auto column = derivatives_.col(j);
-    column.array() *= scale_ * weight_.array();
-    columns_.ProjectOut(column);
-    if (square > 0) column -= response_values_.dot(column) / square * response_values_;
-  }
-  gradient_ = derivatives_.transpose() * residual_;
-  normal_.resize(count, count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index other = 0; other <= j; ++other) {
-      normal_(j, other) = normal_(other, j) = derivatives_.col(j).dot(derivatives_.col(other));
-    }
-    const auto k = static_cast<std::size_t>(j);
-    const Parameter& parameter = problem_->parameters[searched_[k].parameter];
-    if (!parameter.has_prior()) continue;
-    const double weight = parameter.prior_root_weight * parameter.prior_root_weight;
-    normal_(j, j) += weight;
-    gradient_[j] += weight * (u[k] - parameter.prior_theta);
-  }
-  return cost;
-}
-
-/// Adds the derivatives by linear parameters that are searched and by what shapes linear columns,
-/// over the scale and without weights, at the linear parameters that were eliminated.
-void ProjectedResidual::DifferentiateColumns() {
-  if (std::ranges::none_of(searched_, [this](const SearchedParameter& searched) {
-        return MovesColumns(searched.parameter);
-      })) {
-    return;
-  }
-  std::vector<double> theta = theta_;
-  columns_.Solve(LinearProducts(), theta);
+  const double cost = Regress(std::exp(LogScaleAt(*problem_, theta_)));
+  derivatives_ *= scale_;
+  const std::vector<double> theta = Theta();
   double* column = derivatives_.data();
-  for (const SearchedParameter& searched : searched_) {
+  for (const std::size_t p : places_) {
     for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
       const std::size_t size = problem_->data->records[r].size();
-      AddDerivativeOfColumns(*problem_, searched.parameter, r, theta, 1 / scale_, {column, size});
+      AddDerivativeOfColumns(*problem_, p, r, theta, {column, size});
       column += size;
     }
   }
+  derivatives_.array().colwise() *= weight_.array();
+  derivatives_ -= basis_ * (basis_.transpose() * derivatives_);
+  gradient_ = derivatives_.transpose() * residual_;
+  normal_ = derivatives_.transpose() * derivatives_;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Parameter& parameter = problem_->parameters[places_[static_cast<std::size_t>(j)]];
+    const double weight = parameter.prior_root_weight * parameter.prior_root_weight;
+    normal_(j, j) += weight;
+    gradient_[j] += weight * (u[static_cast<std::size_t>(j)] - parameter.prior_theta);
+  }
+  return cost;
 }
 
 }  // namespace mindahl::identification

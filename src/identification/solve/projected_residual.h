@@ -3,11 +3,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "identification/problem/problem.h"
-#include "identification/solve/linear_columns.h"
 
 namespace mindahl::identification {
 
@@ -36,51 +34,29 @@ struct CompressedResidual {
   Eigen::MatrixXd jacobian;
 };
 
-/// A coordinate of the search: a parameter's θ, or where Tc is eliminated ln(σ/Tc) or ln(Tc/k).
+/// A parameter that is searched, and the bounds of its θ.
 struct SearchedParameter {
   std::size_t parameter;
-  double lower;  // of the coordinate
+  double lower;
   double upper;
-  double LawPoint::*eliminated = nullptr;  // the coordinate of the law; null: θ itself
 };
 
-/// The residual of a problem after variable projection (Golub & Pereyra 2003): the scale of the
-/// response and all linear parameters take their least-squares values at every point, and the
-/// residual depends on the searched coordinates alone. Its Jacobian is Kaufman's: the derivatives
-/// of the response, orthogonal to the eliminated columns.
-///
-/// Tc is eliminated where t is searched over σ/Tc (and Tc/k of a rig). Where the user holds or
-/// bounds σ or k, or one of the three has a prior, these and Tc are searched instead. In a fit of
-/// the displacement Tc is searched and its factor Tc/σ eliminated, unless the user holds or bounds
-/// σ or gives it a prior. A bound on an eliminated factor clamps it. Linear parameters with a prior
-/// are searched too; the residuals of priors are in the cost, not in residual().
+/// The residual of a problem after variable projection (Golub & Pereyra 2003): linear parameters
+/// take their least-squares values at every point, and the residual depends on the others alone.
+/// Its Jacobian is Kaufman's: the derivatives of the response, orthogonal to the columns that are
+/// eliminated, of which Eigen's QR makes a basis. Linear parameters that the user bounds, and those
+/// with a prior, are searched too; the residuals of priors are in the cost, not in residual().
 class ProjectedResidual {
  public:
   /// @param problem   must outlive the use; its weights may change before the next Bind()
   /// @param response  bound to the problem here
   void Bind(const Problem& problem, Response& response);
 
-  /// Moves a parameter that the problem holds, of those without a column of their own.
-  void HoldAt(std::size_t parameter, double theta) {
-    theta_[parameter] = theta;
-    if (ShapesColumns(*problem_, parameter)) FactoriseColumns();
-  }
-
-  /// Lets all linear parameters go that were held at a bound.
-  void ReleaseLinear();
-  /// Holds the first linear parameter of θ that lies beyond its bounds at the bound it passed.
-  /// @returns false where none does
-  bool HoldPassed(std::span<double> theta);
+  /// Moves a parameter that the problem holds.
+  void HoldAt(std::size_t parameter, double theta);
 
   [[nodiscard]] std::span<const SearchedParameter> searched() const { return searched_; }
   [[nodiscard]] const Problem& problem() const { return *problem_; }
-  /// θ of what is held, and at the last evaluation of what is searched and not eliminated.
-  [[nodiscard]] std::span<const double> theta() const { return theta_; }
-
-  /// Writes the coordinates at θ, moved into their bounds.
-  void Load(std::span<const double> theta, std::span<double> u) const;
-  /// Writes θ of what is searched or eliminated, at the point of the last evaluation.
-  void Store(std::span<const double> u, std::span<double> theta) const;
 
   /// Returns the sum of the squared weighted residuals; infinity where they are not finite.
   double Evaluate(std::span<const double> u);
@@ -89,47 +65,39 @@ class ProjectedResidual {
   /// JᵀJ and Jᵀr of the last Linearise().
   [[nodiscard]] const Eigen::MatrixXd& normal() const { return normal_; }
   [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
+  /// Returns θ of all parameters at the last evaluation.
+  [[nodiscard]] std::vector<double> Theta() const;
 
-  /// Evaluates with the scale eliminated whatever is held, for looks at the plane of σ/Tc, or of a
-  /// displacement of Tc, and α.
-  /// @returns infinity where the regression has the wrong sign; else σ or Tc is written into θ
-  double EvaluateFreely(const LawPoint& at, std::span<double> theta);
-
-  /// True if Tc, or Tc/σ of a displacement, is eliminated.
-  [[nodiscard]] bool scale_is_linear() const { return scale_is_linear_; }
+  /// Evaluates at θ with the factor of t eliminated too, Tc, or the σ of a displacement: that of θ
+  /// is used in the ratios σ/Tc and Tc/k alone, unless it is held.
+  /// @returns infinity where the regression has the wrong sign; else the factor and the linear
+  ///   parameters are written into θ
+  double EvaluateFreely(std::span<double> theta);
 
  private:
-  void ChooseSearched();
+  void MoveTo(std::span<const double> u);
   void FactoriseColumns();
-  /// True if the columns of linear parameters, or what is taken off, depend on the parameter.
-  [[nodiscard]] bool MovesColumns(std::size_t parameter) const;
-  [[nodiscard]] LawPoint PointOf(std::span<const double> u);
-  [[nodiscard]] std::pair<double, double> BoundsOfScale(double log_rate) const;
-  double Regress(double log_rate, bool is_free, double held_scale);
-  void DifferentiateColumns();
-  /// Returns the products of scale·response and what is measured with the linear columns.
-  [[nodiscard]] Eigen::VectorXd LinearProducts() const {
-    return measured_products_ - scale_ * response_products_;
-  }
+  Eigen::VectorXd ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
+  void SolveLinear(std::span<double> theta) const;
+  double Regress(double scale);
   [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
   Response* response_ = nullptr;
   std::vector<SearchedParameter> searched_;
-  std::vector<Dependence> dependences_;  // on these
-  std::vector<unsigned char> held_;      // linear parameters held at a bound
-  std::vector<double> theta_;            // θ at the last evaluation of what is not eliminated
-  LinearColumns columns_;
+  std::vector<std::size_t> places_;  // of these among the parameters
+  std::vector<double> theta_;        // of what is not eliminated
+  std::vector<std::size_t> linear_;  // what is, as far as their columns are independent
   Eigen::VectorXd weight_;
-  Eigen::VectorXd measured_;         // weighted, projected
-  Eigen::VectorXd response_values_;  // t, weighted, projected
+  Eigen::MatrixXd basis_;     // of the weighted columns
+  Eigen::MatrixXd triangle_;  // R of these
+  Eigen::VectorXd measured_;  // weighted, projected
   Eigen::VectorXd measured_products_;
+  Eigen::VectorXd response_values_;  // t, weighted, projected
   Eigen::VectorXd response_products_;
   Eigen::VectorXd residual_;
   Eigen::MatrixXd derivatives_;  // of the residual by what is searched
   double scale_ = 0.0;           // of t: Tc, or Tc/σ of a displacement
-  bool scale_is_free_ = false;   // not clamped to its bounds
-  bool scale_is_linear_ = false;
   Eigen::MatrixXd normal_;
   Eigen::VectorXd gradient_;
 };

@@ -1,16 +1,18 @@
 #pragma once
 
-#include <ceres/loss_function.h>
-
-#include <memory>
 #include <vector>
 
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
-#include "identification/solve/starts.h"
 #include "mindahl/identification/fit_options.h"
 
 namespace mindahl::identification {
+
+struct StartingPoint {
+  std::vector<double> theta;  // all parameters
+  double cost = 0.0;          // on the thinned record
+  double look = 0.0;          // of the best look there
+};
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
@@ -25,8 +27,15 @@ struct Candidate {
 
 SolverOptions SolverOptionsOf(const FitOptions& options);
 
-/// Finds the candidate's starting points on the thinned records, unless the options give one.
-/// @param rival  of another initial state, as FindStarts() takes it
+/// Finds the candidate's starting points, best first, from the data or as the options give them.
+///
+/// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
+/// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
+/// is tried unloaded at the first sample, at the centre of the record and at displacement zero; a
+/// rig of unknown stiffness at some ratios to the contact's. The best of each α, or where α is held
+/// of each third of the plane, goes on to the minimum of the thinned record.
+/// @param rival  look of another initial state; of looks ten times as dear the best alone is
+///   followed. Infinite where there is none
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, Solver& solver);
@@ -45,18 +54,5 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 /// where the rig takes another part of the compliance, and a noisy virgin loop one that had been
 /// loaded before. Where a start is given it is the only one.
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
-
-/// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
-/// (Huber 1981; Holland & Welsch 1977): null for none.
-std::unique_ptr<ceres::LossFunction> LossOf(Loss loss);
-
-/// Minimises ½ Σ ρ((w·r/scale)²) of the samples by ceres::Solve, one residual block with a
-/// ceres::LossFunction a sample and one without a loss a prior, over all free parameters within
-/// their bounds.
-/// @param loss      not Loss::kNone
-/// @param scale     of the weighted residuals [units of the data], > 0
-/// @param solution  θ is where the search starts; written but for sum of squares and residual
-void SolveRobustly(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
-                   Solution& solution);
 
 }  // namespace mindahl::identification

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <ceres/solver.h>
+#include <ceres/loss_function.h>
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "identification/problem/problem.h"
 #include "identification/solve/projected_residual.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 
 namespace mindahl::identification {
@@ -25,11 +27,6 @@ struct SolverOptions {
   bool is_rough = false;
 };
 
-/// Returns what every search by ceres::Solve is asked for. Its gradient has no scale of its own, so
-/// that only a gradient of zero ends a search.
-ceres::Solver::Options CeresOptionsOf(const SolverOptions& options,
-                                      ceres::LinearSolverType linear_solver);
-
 struct Solution {
   std::vector<double> theta = {};    // of all parameters
   std::vector<BoundSide> side = {};  // of all parameters
@@ -37,6 +34,18 @@ struct Solution {
   bool converged = false;
   SolverReport report = {};  // costs in units of the data
 };
+
+/// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
+/// (Huber 1981; Holland & Welsch 1977): null for none.
+std::unique_ptr<ceres::LossFunction> LossOf(Loss loss);
+
+/// Minimises ½ Σ ρ((w·r/scale)²) of the samples by ceres::Solve, one residual block with a
+/// ceres::LossFunction a sample, or one of all without a loss, and one a prior, over all free
+/// parameters within their bounds.
+/// @param scale     of the weighted residuals [units of the data], > 0
+/// @param solution  θ is where the search starts; written but for sum of squares and residual
+void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
+                  Solution& solution);
 
 /// Least squares by variable projection (projected_residual.h), searched by Ceres:
 /// - ceres::TinySolver where the solution lies inside the bounds;
@@ -49,17 +58,11 @@ class Solver {
   /// @param problem  must outlive the solves; its weights may change between them
   void Bind(const Problem& problem) { residual_.Bind(problem, response); }
 
-  /// Moves a parameter that the problem holds, of those without a column of their own.
+  /// Moves a parameter that the problem holds.
   void HoldAt(std::size_t parameter, double theta) { residual_.HoldAt(parameter, theta); }
 
-  /// Least cost at a point of the law, with the factor of t eliminated whatever is held, for looks
-  /// at the plane of σ/Tc, or of a displacement of Tc, and α.
-  /// @returns Σ of the squared weighted residuals; infinity where the regression has the wrong
-  /// sign,
-  ///   else writes what is eliminated into θ
-  double CostAt(const LawPoint& at, std::span<double> theta) {
-    return residual_.EvaluateFreely(at, theta);
-  }
+  /// Least cost with the ratios of θ, and all that is linear eliminated (projected_residual.h).
+  double CostAt(std::span<double> theta) { return residual_.EvaluateFreely(theta); }
 
   /// @param start  θ, moved into the bounds
   void Solve(std::span<const double> start, const SolverOptions& options, Solution& solution);
@@ -68,10 +71,8 @@ class Solver {
 
  private:
   void SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution);
-  void MarkSides(std::span<const double> u, Solution& solution) const;
 
   ProjectedResidual residual_;
-  std::vector<double> u_;
 };
 
 }  // namespace mindahl::identification

@@ -1,4 +1,3 @@
-#include "identification/solve/starts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,344 +5,312 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/extremes.h"
+#include "identification/solve/search.h"
 
 namespace mindahl::identification {
 namespace {
 
-/// Holds the starting points of one α: σX/Tc, closer where loops of that shape differ. The first
-/// two rows cost square roots and divisions only.
+constexpr double kNoCost = std::numeric_limits<double>::infinity();
+
+/// Holds where loops of one α are looked at, closer where they differ. The first two rows cost
+/// square roots and divisions only.
 struct StartRow {
   double shape;
-  std::size_t count;
-  std::array<double, 11> reaches;  // σX/Tc
+  std::vector<double> reaches;  // σX/Tc; of an imposed force, which stays below slip, T*/Tc
 };
-constexpr std::array kRows = {
-    StartRow{1.0 / 3.0, 11, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 90., 150.}},
-    StartRow{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
-    StartRow{1.0, 6, {0.5, 1.5, 4.0, 12., 60., 120.}},
-    StartRow{2.5, 5, {0.7, 3.0, 12., 60., 120.}}};
-/// Starting points T*/Tc under an imposed force, which stays below slip.
-constexpr std::array<StartRow, 4> kMobilisedRows = {
-    StartRow{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
-    StartRow{0.0, 2, {0.5, 0.99}}, StartRow{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
-    StartRow{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
-constexpr double kNear = 4.0;
-constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
-/// Number of starts where α is held at 0 and there are several minima next to each other.
-constexpr std::size_t kStartsAmongKinks = 4;
+const std::vector<StartRow>& RowsOf(bool is_forced) {
+  static const std::vector<StartRow> rows = {
+      {1.0 / 3.0, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 90., 150.}},
+      {0.0, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
+      {1.0, {0.5, 1.5, 4.0, 12., 60., 120.}},
+      {2.5, {0.7, 3.0, 12., 60., 120.}}};
+  static const std::vector<StartRow> mobilised = {
+      {1.0 / 3.0, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
+      {0.0, {0.5, 0.99}},
+      {1.0, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
+      {2.5, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
+  return is_forced ? mobilised : rows;
+}
 
 /// A term with which a loop looks like one of another shape: the best look of each shape is tried
 /// with it.
 struct TermOfLook {
   TermId id;
-  std::size_t count;
-  std::array<double, 10> trials;  // θ
-  bool is_of_bound = false;       // times the bound on that side
-  double stiffest = 1.0;          // what a gap takes of a stroke looked like compliance
+  std::vector<double> trials;  // θ
+  bool is_of_bound = false;    // times the bound on that side
+  double stiffest = 1.0;       // what a gap takes of a stroke looked like compliance
 };
-constexpr std::array kTermsOfLook = {
-    TermOfLook{.id = TermId::kLag,
-               .count = 10,
-               .trials = {-0.06, -0.15, -0.3, -0.6, -1.0, 0.06, 0.15, 0.3, 0.6, 1.0},
-               .is_of_bound = true},
-    TermOfLook{.id = TermId::kAsymmetry, .count = 4, .trials = {-0.6, -0.3, 0.3, 0.6}},
-    TermOfLook{.id = TermId::kBacklash,
-               .count = 5,
-               .trials = {0.02, 0.05, 0.1, 0.2, 0.4},
-               .stiffest = 8.0}};
 
-/// A point of the plane and its cost.
+const std::vector<TermOfLook>& TermsOfLook() {
+  static const std::vector<TermOfLook> terms = {
+      {.id = TermId::kLag,
+       .trials = {-0.06, -0.15, -0.3, -0.6, -1.0, 0.06, 0.15, 0.3, 0.6, 1.0},
+       .is_of_bound = true},
+      {.id = TermId::kAsymmetry, .trials = {-0.6, -0.3, 0.3, 0.6}},
+      {.id = TermId::kBacklash, .trials = {0.02, 0.05, 0.1, 0.2, 0.4}, .stiffest = 8.0}};
+  return terms;
+}
+
+/// A point of the plane, its cost and θ there.
 struct Look {
-  double cost = std::numeric_limits<double>::infinity();
-  double reach = 0.0;  // σX/Tc; T*/Tc of an imposed force
-  double shape = 0.0;
-  double rig_ratio = 1.0;
-  std::size_t guess = 0;                            // of where the contact was unloaded
-  std::array<double, kTermsOfLook.size()> terms{};  // θ; of one that is not fitted it is ignored
+  double cost = kNoCost;
+  double reach = 0.0;
+  double rig_ratio = 1.0;  // σ/k
+  std::vector<double> theta = {};
 };
 
+/// The cost over the plane of reach and α.
 class Plane {
  public:
-  Plane(const Problem& problem, const FitOptions& options, Solver& solver)
-      : problem_(problem), options_(options), solver_(solver) {
-    for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
-    FindGuesses();
+  Plane(const Problem& problem, Solver& solver) : problem_(problem), solver_(solver) {}
+
+  /// Looks from θ of a look, whose α, origins and terms stay, and keeps it where it is better.
+  void KeepBetter(Look& best, Look look) {
+    // Without slip nothing depends on the reach: of equals the last, nearest to slip.
+    constexpr double kEqual = 1 + 1e-9;
+    At(look);
+    if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
   }
 
-  /// Returns the parameter of kTermsOfLook.
-  [[nodiscard]] const Parameter& TermOf(std::size_t term) const {
-    return problem_.parameters[RowOf(kTermsOfLook[term].id)];
-  }
-  [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
-
-  /// Writes the look's cost, and what it found into theta().
-  void At(Look& look) {
+  /// The best looks of those that compete: of one α, or where α is held of one third of the
+  /// reaches.
+  /// @param theta     with the contacts unloaded somewhere
+  /// @param hopeless  cost beyond which Mindlin's row says enough
+  std::vector<Look> From(std::vector<double> theta, double hopeless) {
+    constexpr std::size_t kThirds = 3;
+    constexpr double kNear = 4.0;
     const Parameters& parameters = problem_.parameters;
-    const Parameter& slip_force = parameters[kSlipForce];
-    const double log_reach = !is_forced()       ? std::log(look.reach)
-                             : slip_force.fixed ? -slip_force.theta
-                                                : std::log(look.reach / FarthestFrom(look.guess));
-    LawPoint point{.log_rate = log_reach, .shape = look.shape, .theta = theta_};
-    if (parameters.is_load_series()) {
-      // Elements in parallel make it α.
-      const Parameter& exponent = parameters[kLoadExponent];
-      if (!exponent.fixed) {
-        theta_[kLoadExponent] =
-            std::clamp(std::min(look.shape, 1.0), exponent.lower, exponent.upper);
-      }
-      point.load_exponent = theta_[kLoadExponent];
-    }
-    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-      theta_[parameters.PositionOfOrigin(r)] = guesses_[look.guess][r];
-    }
-    for (std::size_t k = 0; k < kTermsOfLook.size(); ++k) {
-      const Parameter& term = TermOf(k);
-      if (term.fixed) continue;
-      theta_[RowOf(kTermsOfLook[k].id)] = std::clamp(look.terms[k], term.lower, term.upper);
-    }
-    if (parameters.has_rig()) {
-      // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
-      const Parameter& rig = parameters[kRig];
-      const double stiffness = rig.fixed || rig.has_prior()
-                                   ? std::exp(rig.theta)
-                                   : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
-      const double softer = 1 / look.reach - 1 / stiffness;
-      const double contact = softer <= 0.1 / look.reach ? 10 * look.reach : 1 / softer;
-      point.log_rate = std::log(contact);
-      point.log_travel = -std::log(stiffness);
-    }
-    look.cost = solver_.CostAt(point, theta_);
-    if (!std::isfinite(look.cost)) return;
-    for (const std::size_t p : parameters.free()) {
-      // Columns far beyond their bounds make a straight line of any loop.
-      const bool is_column = parameters[p].term->is_linear;
-      if (is_column && (theta_[p] < parameters[p].lower || theta_[p] > parameters[p].upper)) {
-        look.cost = std::numeric_limits<double>::infinity();
-        return;
+    const Parameter& shape = parameters[kShape];
+    const Parameter& rig = parameters[kRig];
+    const bool rig_is_open = !rig.absent && !rig.fixed && !rig.has_prior();
+    const std::vector<double> ratios =
+        rig_is_open ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
+    const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
+    std::vector<Look> best(rows.size());
+    const std::size_t count = shape.fixed ? 1 : rows.size();
+    for (std::size_t k = 0; k < count && !(best[0].cost > hopeless && k > 0); ++k) {
+      const std::vector<double>& reaches = rows[k].reaches;
+      theta[kShape] =
+          shape.fixed ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
+      // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
+      // minimum, the others are looked at around it.
+      const double seen = k == 0 ? 0.0 : best[0].reach;
+      for (std::size_t i = 0; i < reaches.size(); ++i) {
+        if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
+        Look& group = best[shape.fixed ? i * kThirds / reaches.size() : k];
+        for (const double ratio : ratios) {
+          KeepBetter(group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
+        }
       }
     }
-    theta_[kShape] = look.shape;
-    if (is_forced()) {
-      ClampFree();
-      return;
-    }
-    if (!parameters[kStiffness].fixed) theta_[kStiffness] = point.log_rate + theta_[kSlipForce];
-    if (parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].has_prior()) {
-      theta_[kRig] = theta_[kSlipForce] - point.log_travel;
-    }
-    if (parameters[kStiffness].fixed && !parameters[kSlipForce].fixed) {
-      theta_[kSlipForce] = theta_[kStiffness] - point.log_rate;
-    }
-    ClampFree();
+    return best;
   }
 
-  [[nodiscard]] bool is_forced() const { return problem_.data->is_forced(); }
-
-  /// θ of the last look, with what the options have to say of starts.
-  [[nodiscard]] std::span<const double> theta() {
-    for (const std::size_t p : problem_.parameters.free()) {
-      problem_.parameters.FindStart(options_, p, theta_[p]);
+  /// Tries a look with the terms that make it look like one of another shape.
+  void LookForTerms(Look& best) {
+    for (const TermOfLook& term : TermsOfLook()) {
+      const Parameter& parameter = problem_.parameters[RowOf(term.id)];
+      const Look without = best;
+      for (std::size_t i = 0; !parameter.fixed && i < term.trials.size(); ++i) {
+        const double bound = term.trials[i] < 0 ? -parameter.lower : parameter.upper;
+        const double trial = term.trials[i] * (term.is_of_bound ? bound : 1.0);
+        for (double stiffer = 1.0; stiffer <= term.stiffest; stiffer *= 2) {
+          Look look = without;
+          look.theta[RowOf(term.id)] = std::clamp(trial, parameter.lower, parameter.upper);
+          look.reach *= stiffer;
+          KeepBetter(best, std::move(look));
+        }
+      }
     }
-    return theta_;
+  }
+
+  /// Returns θ with contacts unloaded at their first samples, at the centres of the records, and at
+  /// the file's zero, where these differ.
+  [[nodiscard]] std::vector<std::vector<double>> Guesses() const {
+    std::vector<std::vector<double>> guesses;
+    for (const int place : {0, 1, 2}) {
+      std::vector<double> theta;
+      for (const Parameter& of : problem_.parameters) {
+        theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
+      }
+      bool is_inside = true;
+      for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+        const std::size_t p = problem_.parameters.PositionOfOrigin(r);
+        const Parameter& origin = problem_.parameters[p];
+        if (origin.fixed) continue;
+        theta[p] = place == 0   ? problem_.data->records[r].excitation().front()
+                   : place == 1 ? 0.0
+                                : origin.ToTheta(0.0);
+        is_inside = is_inside && (place < 2 || std::abs(theta[p]) <= 1);
+      }
+      if (is_inside && std::ranges::find(guesses, theta) == guesses.end()) {
+        guesses.push_back(std::move(theta));
+      }
+    }
+    return guesses;
   }
 
  private:
-  using Guess = std::vector<double>;  // one a record
+  /// Writes the cost of a look, and what is found there into its θ.
+  void At(Look& look) {
+    const Parameters& parameters = problem_.parameters;
+    const Parameter& stiffness = parameters[kStiffness];
+    const Parameter& slip_force = parameters[kSlipForce];
+    const Parameter& rig = parameters[kRig];
+    const Parameter& exponent = parameters[kLoadExponent];
+    std::vector<double>& theta = look.theta;
+    const bool is_forced = problem_.data->is_forced();
+    if (!exponent.fixed) {
+      // Elements in parallel make it α.
+      theta[kLoadExponent] =
+          std::clamp(std::min(theta[kShape], 1.0), exponent.lower, exponent.upper);
+    }
+    // The ratios of a contact of Tc = 1, or where that is held of its own.
+    const double log_slip_force = slip_force.fixed ? slip_force.theta : 0.0;
+    theta[kSlipForce] = log_slip_force;
+    double log_stiffness = std::log(look.reach);
+    double log_rig = 0.0;
+    if (is_forced && !slip_force.fixed) {
+      theta[kSlipForce] = std::log(FarthestFrom(theta) / look.reach);
+    }
+    const bool rig_is_held = rig.fixed || rig.has_prior();
+    if (parameters.has_rig()) {
+      // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k.
+      const double compliance =
+          rig_is_held ? std::exp(-rig.theta) : look.rig_ratio / (look.reach * (1 + look.rig_ratio));
+      log_stiffness = -std::log(std::max(1 / look.reach - compliance, 0.1 / look.reach));
+      log_rig = -std::log(compliance);
+    }
+    if (!is_forced) {
+      theta[kStiffness] = log_stiffness + log_slip_force;
+      theta[kRig] = log_rig + log_slip_force;
+    }
+    look.cost = solver_.CostAt(theta);
+    if (!std::isfinite(look.cost)) return;
+    if (!is_forced) {
+      // What is held stays: the look tells the ratios.
+      if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
+      theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
+      theta[kRig] = rig_is_held ? rig.theta : log_rig + theta[kSlipForce];
+    }
+    for (const std::size_t p : parameters.free()) {
+      const Parameter& parameter = parameters[p];
+      const double inside = std::clamp(theta[p], parameter.lower, parameter.upper);
+      // Columns far beyond their bounds make a straight line of any loop.
+      if (parameter.term->is_linear && inside != theta[p]) look.cost = kNoCost;
+      theta[p] = inside;
+    }
+  }
 
-  /// Largest |excitation| from where a guess has the contact unloaded.
-  [[nodiscard]] double FarthestFrom(std::size_t guess) const {
+  /// Largest |excitation| from where the contacts are unloaded.
+  [[nodiscard]] double FarthestFrom(std::span<const double> theta) const {
     double farthest = 0.0;
     for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
       const auto [low, high] = ExtremesOf(problem_.data->records[r].excitation());
-      const double unloaded = guesses_[guess][r];
+      const double unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
       farthest = std::max({farthest, high - unloaded, unloaded - low});
     }
     return farthest;
   }
 
-  void ClampFree() {
-    const Parameters& parameters = problem_.parameters;
-    for (const std::size_t p : parameters.free()) {
-      theta_[p] = std::clamp(theta_[p], parameters[p].lower, parameters[p].upper);
-    }
-  }
-
-  /// At the first sample, at the centre of the record and at the file's zero, where these differ.
-  void FindGuesses() {
-    const auto guess_at = [this](auto&& place) {
-      Guess guess;
-      for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-        const Parameter& offset = problem_.parameters[problem_.parameters.PositionOfOrigin(r)];
-        guess.push_back(offset.fixed ? offset.theta : place(problem_.data->records[r], offset));
-      }
-      return guess;
-    };
-    const auto add = [this](const Guess& guess) {
-      if (std::ranges::find(guesses_, guess) == guesses_.end()) guesses_.push_back(guess);
-    };
-    add(guess_at([](const ScaledRecord& record, const Parameter& /*offset*/) {
-      return record.excitation().front();
-    }));
-    add(guess_at([](const ScaledRecord& /*record*/, const Parameter& /*offset*/) { return 0.0; }));
-    const Guess zero = guess_at([](const ScaledRecord& /*record*/, const Parameter& offset) {
-      return offset.ToTheta(0.0);
-    });
-    if (std::ranges::all_of(zero, [](double x) { return std::abs(x) <= 1; })) add(zero);
-  }
-
   const Problem& problem_;
-  const FitOptions& options_;
   Solver& solver_;
-  std::vector<double> theta_;
-  std::vector<Guess> guesses_;
 };
 
-void KeepBetter(Look& best, Plane& plane, Look look) {
-  // Without slip nothing depends on the reach: of equals the last, nearest to slip.
-  constexpr double kEqual = 1 + 1e-9;
-  plane.At(look);
-  if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = look;
-}
-
-void LookForTerm(std::size_t term, Look& best, Plane& plane) {
-  const TermOfLook& of = kTermsOfLook[term];
-  const Parameter& parameter = plane.TermOf(term);
-  const Look none = best;
-  for (const double trial : std::span(of.trials).first(of.count)) {
-    const double bound = trial < 0 ? -parameter.lower : parameter.upper;
-    for (double stiffer = 1.0; stiffer <= of.stiffest; stiffer *= 2) {
-      Look look = none;
-      look.terms[term] = of.is_of_bound ? trial * bound : trial;
-      look.reach = none.reach * stiffer;
-      KeepBetter(best, plane, look);
-    }
-  }
-}
-
-using Looks = std::array<Look, kRows.size()>;
-
-/// The best looks of those that compete, from one guess of where the contact was unloaded: of one
-/// α, or where α is held of one third of the reaches.
-/// @param hopeless  cost beyond which Mindlin's row says enough
-void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, double hopeless,
-                Looks& best) {
-  const Parameter& shape = parameters[kShape];
-  const bool rig_is_open =
-      parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].has_prior();
-  const auto look_at = [&](std::size_t group, double reach, double alpha) {
-    if (!rig_is_open) {
-      KeepBetter(best[group], plane, {.reach = reach, .shape = alpha, .guess = guess});
-      return;
-    }
-    for (const double ratio : kRigRatios) {
-      KeepBetter(best[group], plane,
-                 {.reach = reach, .shape = alpha, .rig_ratio = ratio, .guess = guess});
-    }
-  };
-  const auto& rows = plane.is_forced() ? kMobilisedRows : kRows;
-  if (shape.fixed) {
-    constexpr std::size_t kThirds = 3;
-    const StartRow& row = rows.front();
-    for (std::size_t i = 0; i < row.count; ++i) {
-      look_at(i * kThirds / row.count, row.reaches[i], shape.theta);
-    }
-    return;
-  }
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double alpha = std::clamp(rows[k].shape, shape.lower, shape.upper);
-    // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
-    // minimum, the others are looked at around it.
-    const double reach = best[0].reach;
-    const auto is_near = [&](double other) {
-      return k == 0 || reach == 0 || (other > reach / kNear && other < reach * kNear);
-    };
-    for (std::size_t i = 0; i < rows[k].count; ++i) {
-      if (is_near(rows[k].reaches[i])) look_at(k, rows[k].reaches[i], alpha);
-    }
-    if (best[0].cost > hopeless) return;
-  }
-}
-
-/// Looks around the first guess from which a look leads anywhere. Looks of several are not
-/// compared: this far from the minimum the better one often leads to the worse minimum.
-Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
-  Looks best;
-  const auto leads_anywhere = [](const Look& look) { return std::isfinite(look.cost); };
-  for (std::size_t guess = 0; guess < plane.guesses() && std::ranges::none_of(best, leads_anywhere);
-       ++guess) {
-    LookAround(plane, parameters, guess, hopeless, best);
-  }
-  for (Look& look : best) {
-    for (std::size_t k = 0; std::isfinite(look.cost) && k < kTermsOfLook.size(); ++k) {
-      if (!plane.TermOf(k).fixed) LookForTerm(k, look, plane);
-    }
-  }
-  std::ranges::sort(best, {}, &Look::cost);
-  return best;
-}
-
-// The thinned record's minimum is a start only: no digits are asked of it.
-constexpr SolverOptions kRough{.function_tolerance = 1e-2,
-                               .parameter_tolerance = 1e-6,
-                               .max_iterations = 30,
-                               .is_rough = true};
-
-}  // namespace
-
+/// Returns the options' own start, where it leaves nothing to be looked for.
 std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options) {
   if (options.start.empty()) return std::nullopt;
   StartingPoint start;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    double& theta = start.theta.emplace_back(parameters[p].theta);
-    const Term& term = *parameters[p].term;
-    const bool is_searched = !term.is_linear && !term.has_start;
-    if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
-    if (is_searched) return std::nullopt;
+  for (const Parameter& parameter : parameters) {
+    start.theta.push_back(parameter.theta);
+    const bool has_start = parameter.term->is_linear || parameter.term->has_start;
+    if (!parameter.fixed && !parameter.started_by_user && !has_start) return std::nullopt;
   }
   return start;
 }
 
-bool HasKinks(const Parameters& parameters) {
-  return parameters[kShape].fixed && parameters[kShape].theta == 0;
+/// Returns the thinned records where they determine the law: they have the history of the whole.
+/// But a window or a fold may leave little of them, a column that wanders as it likes explains a
+/// few samples a stroke whatever the law is, and kinks are where samples are.
+const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
+                                    ThinnedRecords& thinned) {
+  constexpr std::size_t kEnough = 4;  // samples a parameter
+  const Parameters& parameters = problem.parameters;
+  const bool has_covariate = std::ranges::any_of(
+      parameters.free(), [&](std::size_t p) { return parameters[p].term->of_column; });
+  const bool is_enough = thinned.Get().counted >= kEnough * parameters.free().size();
+  return is_enough && !has_covariate && !has_kinks ? thinned.Get() : *problem.data;
 }
 
-std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
-                                      Solver& solver) {
+}  // namespace
+
+double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
+                    double rival, Solver& solver) {
+  const Problem& problem = candidate.problem;
+  std::vector<StartingPoint>& starts = candidate.starts;
+  starts.clear();
+  if (auto given = GivenStart(problem.parameters, options)) {
+    starts.push_back(std::move(*given));
+    return 0.0;
+  }
   // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
   constexpr double kBeyondRival = 10.0;
-  std::vector<StartingPoint> starts;
+  constexpr std::size_t kStartsAmongKinks = 4;
+  // The thinned record's minimum is a start only: no digits are asked of it.
+  constexpr SolverOptions kRough{.function_tolerance = 1e-2,
+                                 .parameter_tolerance = 1e-6,
+                                 .max_iterations = 30,
+                                 .is_rough = true};
+  // With α held at 0 the likelihood has a kink wherever a sample begins to slip, and minima next to
+  // each other.
+  const Parameter& shape = problem.parameters[kShape];
+  const bool has_kinks = shape.fixed && shape.theta == 0;
+  const ScaledRecords& data = RecordsOfLooks(problem, has_kinks, thinned);
+  const Problem thin{&data, problem.model, problem.states, problem.parameters};
   solver.Bind(thin);
-  Solution scratch;
-  Plane plane(thin, options, solver);
-  const Looks looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
+  Plane plane(thin, solver);
+  // The first guess from which a look leads anywhere. Looks of several are not compared: this far
+  // from the minimum the better one often leads to the worse minimum.
+  std::vector<Look> looks;
+  for (std::vector<double>& guess : plane.Guesses()) {
+    looks = plane.From(std::move(guess), kBeyondRival * rival);
+    std::erase_if(looks, [](const Look& look) { return !std::isfinite(look.cost); });
+    if (!looks.empty()) break;
+  }
+  for (Look& look : looks) plane.LookForTerms(look);
+  std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
     return thin.parameters[p].term->presence == Presence::kOnDemand;
   });
-  const bool is_beaten = looks.front().cost > kBeyondRival * rival;
-  const std::size_t most = HasKinks(thin.parameters) ? kStartsAmongKinks : 1;
-  for (Look look : looks) {
-    const bool is_wanted =
-        bent || starts.size() < most ||
-        (starts.size() < 2 && look.cost < options.thresholds.hopeless * looks.front().cost);
-    if (!is_wanted || !std::isfinite(look.cost)) break;
-    plane.At(look);
-    const std::span<const double> theta = plane.theta();
-    StartingPoint& start = starts.emplace_back(StartingPoint{
-        .theta = {theta.begin(), theta.end()}, .cost = look.cost, .look = looks.front().cost});
+  const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
+  Solution scratch;
+  for (Look& look : looks) {
+    const double least = looks.front().cost;
+    if (!bent && starts.size() >= most &&
+        !(starts.size() < 2 && look.cost < options.thresholds.hopeless * least)) {
+      break;
+    }
+    for (const std::size_t p : thin.parameters.free()) {
+      const Parameter& parameter = thin.parameters[p];
+      if (parameter.started_by_user) look.theta[p] = parameter.theta;
+    }
+    StartingPoint& start =
+        starts.emplace_back(StartingPoint{std::move(look.theta), look.cost, least});
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
     start.theta = scratch.theta;
     start.cost = scratch.sum_of_squares;
-    if (is_beaten) break;
+    if (least > kBeyondRival * rival) break;
   }
   std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
   if (starts.size() > most) starts.resize(most);
-  return starts;
+  return starts.empty() ? kNoCost : starts.front().cost;
 }
 
 }  // namespace mindahl::identification

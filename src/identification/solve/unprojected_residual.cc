@@ -55,9 +55,6 @@ UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit)
                                   problem.states[record] == models::InitialState::kSteady;
     if (!is_steady_origin) blocks_.push_back(p);
   }
-  for (const ScaledRecord& record : problem.data->records) {
-    counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
-  }
   response_.Bind(problem);
   jacobian_.resize(samples() * blocks_.size());
 }
@@ -94,7 +91,6 @@ void AddResidual(const std::shared_ptr<UnprojectedResidual>& residual,
     return;
   }
   for (std::size_t i = 0; i < residual->samples(); ++i) {
-    if (!residual->Counts(i)) continue;
     problem.AddResidualBlock(std::make_unique<SampleCost>(residual, i, 1).release(), loss, blocks);
   }
 }

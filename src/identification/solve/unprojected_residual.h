@@ -27,7 +27,6 @@ class UnprojectedResidual {
   /// the fit reports, but for the reference position of a steady contact, which has no effect.
   [[nodiscard]] std::span<const std::size_t> blocks() const { return blocks_; }
   [[nodiscard]] std::size_t samples() const { return residual_.size(); }
-  [[nodiscard]] bool Counts(std::size_t sample) const { return counts_[sample] != 0; }
 
   /// Evaluates at the blocks' θ, unless it has been done there.
   void MoveTo(double const* const* theta, bool with_jacobian);
@@ -41,7 +40,6 @@ class UnprojectedResidual {
   const Problem& problem_;
   double unit_;
   std::vector<std::size_t> blocks_;
-  std::vector<unsigned char> counts_;
   Response response_;
   std::vector<double> theta_;
   std::vector<double> at_;  // of the blocks
@@ -53,8 +51,8 @@ class UnprojectedResidual {
 /// The cost function of all samples.
 std::unique_ptr<ceres::CostFunction> CostOf(std::shared_ptr<UnprojectedResidual> residual);
 
-/// Adds a residual block; with a loss one a sample that counts, which share their evaluations, so
-/// that they belong to one thread.
+/// Adds a residual block; with a loss one a sample, which share their evaluations, so that they
+/// belong to one thread.
 /// @param blocks  θ of the residual's blocks, in order
 /// @param loss    may be null; the problem takes it as its options have it
 void AddResidual(const std::shared_ptr<UnprojectedResidual>& residual,

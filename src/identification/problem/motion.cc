@@ -1,0 +1,159 @@
+#include "identification/problem/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "identification/problem/parameters.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Returns the lags that the options allow [s, or samples].
+/// @param first  the first record, whose cycles the bounds are of
+Interval LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
+  const auto fixed = options.fixed.find("lag");
+  if (fixed != options.fixed.end()) return {fixed->second, fixed->second};
+  const auto bound = options.bounds.find("lag");
+  if (bound != options.bounds.end()) return bound->second;
+  const std::size_t reversals = first.reversals.size();
+  const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
+                         MeanCycleDuration(first.record.time, first.size(), reversals);
+  return {-longest, longest};
+}
+
+/// Moves a contact whose force is read late. It runs straight from sample to sample and turns at
+/// the reversals, whatever the lag: these are put in between the moved samples, and so are both
+/// ends of the record, beyond which the displacement is constant.
+MovedPath MoveLate(const ScaledRecord& record, double lag) {
+  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
+  const std::span<const double> x = motion.displacement;
+  const std::span<const double> time = motion.time;
+  MovedPath late;
+  late.displacement.reserve(record.size() + motion.reversals.size() + 2);
+  late.displacement.push_back(x.front());
+  std::size_t next = 1;  // the sample that the motion comes to next
+  std::size_t turn = 0;
+  const auto turn_before = [&](std::size_t end) {
+    for (; turn < motion.reversals.size() && motion.reversals[turn] < end; ++turn) {
+      late.reversals.push_back(late.displacement.size());
+      late.displacement.push_back(x[motion.reversals[turn]]);
+    }
+  };
+  for (const double read : record.time) {
+    const double at = std::clamp(read - lag, time.front(), time.back());
+    while (next + 1 < motion.size() && time[next] < at) ++next;
+    turn_before(next);
+    const double duration = time[next] - time[next - 1];
+    // Where time stands still, the later.
+    const double fraction = duration > 0 ? (at - time[next - 1]) / duration : 1.0;
+    late.samples.push_back(late.displacement.size());
+    late.displacement.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));
+  }
+  turn_before(motion.size());
+  late.displacement.push_back(x.back());
+  return late;
+}
+
+/// Moves a contact to one side of a gap. In each stroke it runs from where it was when the last one
+/// ended. There the gap is closed on the side of the force that is measured, so that the path of
+/// the contact depends on the gap alone: exact where no turning point lies within the gap.
+/// @param side  +1 of the side that bears forces above zero, −1 of the other
+MovedPath MoveBehindGap(const ScaledRecord& record, double gap, double side,
+                        const models::InitialContact& initial) {
+  const std::span<const double> x = record.displacement;
+  const double half = gap / 2;
+  const std::vector<Stroke> strokes = StrokesOf(x, record.reversals);
+  std::vector<double> ends;
+  for (const auto& [begin, end, direction] : strokes) {
+    const double closed = record.force[end] == 0 ? direction : record.force[end];
+    ends.push_back(x[end] - std::copysign(1.0, closed) * half);
+  }
+  double from = 0.0;
+  if (initial.state == models::InitialState::kVirgin) {
+    // The contact is unloaded in the middle of the gap.
+    const double travel = x.front() - initial.unloaded_displacement;
+    from = std::abs(travel) <= half ? initial.unloaded_displacement
+                                    : x.front() - std::copysign(1.0, travel) * half;
+  } else {
+    const double direction = strokes.front().direction;
+    from = x.front() + direction * half;
+    for (const double end : ends) {
+      if (direction * (end - from) < 0) from = end;
+    }
+  }
+  MovedPath moved;
+  moved.displacement.resize(record.size());
+  moved.reversals = record.reversals;
+  moved.samples.resize(record.size());
+  std::iota(moved.samples.begin(), moved.samples.end(), std::size_t{0});
+  for (std::size_t s = 0; s < strokes.size(); ++s) {
+    const auto& [begin, end, direction] = strokes[s];
+    // The contact does not move in a stroke that is shorter than the gap.
+    const double to = direction * (ends[s] - from) >= 0 ? ends[s] : from;
+    const auto [low, high] = std::minmax(from, to);
+    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) {
+      moved.displacement[i] = std::clamp(x[i] - side * half, low, high);
+    }
+    moved.displacement[end] = to;
+    from = to;
+  }
+  return moved;
+}
+
+}  // namespace
+
+double LongestLag(double samples_a_cycle) {
+  constexpr double kSamples = 10.0;
+  constexpr double kLongest = 0.2;
+  return std::clamp(kSamples / samples_a_cycle, TermOf(TermId::kLag).highest, kLongest);
+}
+
+void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
+  if (!HasTerm(options, TermId::kLag)) return;
+  const loop::PreparedRecord& first = records.records.front();
+  const Interval lags = LagsOf(options, first);
+  for (std::size_t r = 0; r < records.records.size(); ++r) {
+    loop::PreparedRecord& record = records.records[r];
+    const std::span<const double> time = record.record.time;
+    if (time.empty() != first.record.time.empty() ||
+        (!time.empty() && !(time.back() > time.front()))) {
+      throw InvalidArgument(
+          "lag needs a time that increases in every record, or records without a time");
+    }
+    const auto at = [&](std::size_t i) { return time.empty() ? static_cast<double>(i) : time[i]; };
+    const double begin = at(0);
+    const double end = at(record.size() - 1);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (at(i) - lags.upper < begin || at(i) - lags.lower > end) record.counts[i] = 0;
+    }
+    record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+    if (record.left_out < record.size()) continue;
+    throw InvalidArgument(
+        fmt::format("nothing is left of record {}: with lags of {:.6g} to {:.6g} every sample that "
+                    "counts is moved beyond one of its ends: give smaller ones, --bound lag=LO:HI",
+                    r + 1, lags.lower, lags.upper));
+  }
+}
+
+Motion Move(const ScaledRecord& record, ContactMotion motion, double amount, models::Memory memory,
+            const models::InitialContact& initial) {
+  Motion moved{amount, initial, {}};
+  if (motion == ContactMotion::kLate) {
+    moved.paths.push_back(MoveLate(record, amount));
+  } else {
+    for (const double side : {1.0, -1.0}) {
+      moved.paths.push_back(MoveBehindGap(record, amount, side, initial));
+    }
+  }
+  for (MovedPath& path : moved.paths) {
+    models::MakeLoadingPath(path.displacement, path.reversals, memory, initial, path.path);
+  }
+  return moved;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/terms.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+
+/// Contacts that are elsewhere than the displacement at the time of the force: T_file(t) = T(δ(t −
+/// lag)) of a force that is read late, and those behind a gap.
+namespace mindahl::identification {
+
+/// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
+/// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.
+double LongestLag(double samples_a_cycle);
+
+/// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
+/// not count; they still make history.
+/// @throws InvalidArgument where nothing is left of a record, where some records have a time and
+///   others not, or one never goes on
+void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
+
+/// The displacements of a contact that is moved off its record.
+struct MovedPath {
+  std::vector<double> displacement;
+  std::vector<std::size_t> reversals;
+  std::vector<std::size_t> samples;  // where each is among the displacements
+  models::LoadingPath path;
+};
+
+/// Locates the contact of a record. A gap has two sides, with a path each:
+///   T = max(F(δ − g/2), 0) + min(F(δ + g/2), 0)
+/// first that which bears forces above zero, then that which bears those below.
+struct Motion {
+  double amount = 0.0;  // by which it is moved
+  models::InitialContact initial;
+  std::vector<MovedPath> paths;
+};
+
+/// Moves a contact off its record.
+/// @param amount  a lag in the record's scaled time, or the width of a gap
+Motion Move(const ScaledRecord& record, ContactMotion motion, double amount, models::Memory memory,
+            const models::InitialContact& initial);
+
+}  // namespace mindahl::identification
