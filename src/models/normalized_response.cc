@@ -94,52 +94,6 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   }
 }
 
-void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
-                                                const NormalizedLaw& law, const LoadingPath& path,
-                                                std::span<const double> displacement,
-                                                OriginSensitivity& sensitivity) {
-  const BranchLaw branch_law = LawOf(law);
-  Validate(branch_law);
-  const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const std::size_t count = path.branches.size();
-  sensitivity.slope.assign(count, 0.0);
-  sensitivity.gain.assign(count, 0.0);
-  sensitivity.per_amplitude.assign(count, 0.0);
-  sensitivity.origin_force.resize(count);
-  sensitivity.sample_slope.resize(displacement.size());
-  sensitivity.sample_gain.resize(displacement.size());
-  const SprungShape shape{law.shape_exponent, law.spring_travel};
-  ScaleBranches(scaling, path, shape, branches_);
-  const Differentiation differentiation(scaling, shape);
-  gradients_.clear();
-  const auto at = [&](std::size_t b, double x, double& slope, double& gain) {
-    double force = 0.0;
-    const Gradient g = Differentiation::DifferentiateSample(ShapeOn(shape, branches_[b]),
-                                                            branches_[b], gradients_[b], x, force);
-    slope = -g[kUnloaded];
-    gain = g[kRate];
-  };
-  for (std::size_t b = 0; b < count; ++b) {
-    const Branch& branch = path.branches[b];
-    sensitivity.origin_force[b] = branches_[b].force;
-    if (branch.start == BranchStart::kReversal) {
-      at(static_cast<std::size_t>(branch.parent), branch.origin, sensitivity.slope[b],
-         sensitivity.gain[b]);
-    } else if (branch.start == BranchStart::kSteadyExtreme) {
-      sensitivity.per_amplitude[b] = -branch.direction *
-                                     scaling.Peak(branch.amplitude).peak.per_log_stiffness /
-                                     branch.amplitude;
-    }
-    gradients_.push_back(differentiation.DifferentiateByOriginForce(branch, branches_[b].force));
-  }
-  for (const BranchRun& run : path.runs) {
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      at(static_cast<std::size_t>(run.branch), displacement[i], sensitivity.sample_slope[i],
-         sensitivity.sample_gain[i]);
-    }
-  }
-}
-
 /// d is not finite at slip and beyond.
 NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& branch,
                                                               const ForcedLaw& law, double force,

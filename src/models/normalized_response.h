@@ -29,18 +29,6 @@ bool IsEmpty(const std::array<std::span<double>, kColumns>& gradient) {
   return std::ranges::all_of(gradient, &std::span<double>::empty);
 }
 
-/// Derivatives of forces over Tc by the points where branches start, for fits of these points.
-struct OriginSensitivity {
-  std::vector<double> origin_force;  ///< t at each branch's origin
-  // Per branch, at its origin and on the branch that it starts from; 0 where there is none:
-  std::vector<double> slope;          ///< ∂t/∂δ [1/m]
-  std::vector<double> gain;           ///< derivative by t at that branch's own origin
-  std::vector<double> per_amplitude;  ///< ∂t/∂X [1/m] of a branch that starts at a steady extreme
-  // Per sample:
-  std::vector<double> sample_slope;  ///< ∂t/∂δ [1/m]
-  std::vector<double> sample_gain;   ///< derivative by t at the origin of its branch
-};
-
 /// EvaluateForce (response.h has the equations) over Tc, and its gradient in closed form, for
 /// solvers: buffers are kept, so that nothing is allocated once they are large enough. Tc itself
 /// and all other linear terms are the caller's. Where the law has a corner (α = 0 at slip) the
@@ -56,10 +44,6 @@ class NormalizedResponse {
   void Evaluate(const FrictionModel& model, const NormalizedLaw& law, const LoadingPath& path,
                 std::span<const double> displacement, std::span<double> t,
                 const NormalizedGradient& gradient = {});
-
-  void DifferentiateByOrigins(const FrictionModel& model, const NormalizedLaw& law,
-                              const LoadingPath& path, std::span<const double> displacement,
-                              OriginSensitivity& sensitivity);
 
  private:
   ScaledBranches branches_;

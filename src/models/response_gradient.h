@@ -46,16 +46,6 @@ class Differentiation {
     }
   }
 
-  /// Returns how a branch changes with the force over Tc at its origin, in the place of ln rate.
-  [[nodiscard]] BranchGradient DifferentiateByOriginForce(const Branch& branch,
-                                                          double origin_force) const {
-    BranchGradient result;
-    result.force[kRate] = 1.0;
-    result.origin_per_unloaded = 1.0;
-    AddRemaining(scaling_.ScaleOf(branch, origin_force), branch, result);
-    return result;
-  }
-
   /// Returns the derivatives of t at `displacement`, and t itself.
   /// @param shape  that of the branch
   static Gradient DifferentiateSample(const backbone::InSeries& shape, const ScaledBranch& branch,

@@ -70,23 +70,13 @@ bool IsStateOfJoint(const Problem& problem, const ScaledRecord& record) {
          (!record.load_ratio.empty() || !problem.parameters[RowOf(TermId::kAsymmetry)].absent);
 }
 
-/// Returns the branch that a place of a path is on.
-std::int32_t BranchAt(const models::LoadingPath& path, std::size_t place) {
-  const auto run = std::ranges::upper_bound(path.runs, place, {}, &models::BranchRun::end);
-  return run->branch;
-}
-
-double LoadRatioAt(const ScaledRecord& record, std::size_t sample) {
-  return record.load_ratio.empty() ? 1.0 : record.load_ratio[sample];
-}
-
 /// Puts the force in the place of the state z, and its derivatives in the place of those of z.
 void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<double> t,
                       const ResponseColumns& columns) {
   const std::vector<std::span<double>> wanted = columns.Wanted();
   const std::span<double> by_asymmetry = columns[TermId::kAsymmetry];
   for (std::size_t i = 0; i < t.size(); ++i) {
-    const double load = LoadRatioAt(record, i);
+    const double load = record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
     const double slope = models::JointForceSlope(t[i], load, asymmetry);
     for (const std::span<double> column : wanted) column[i] *= slope;
     if (!by_asymmetry.empty()) by_asymmetry[i] = load * t[i] * t[i];
@@ -161,19 +151,6 @@ std::vector<const MovedPath*> Response::BearingPaths(const Motion& motion,
 
 const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const double> theta) {
   CachedPath& cached = paths_[r];
-  if (has_moved_) {
-    const Motion& motion = MotionOf(r, theta);
-    const models::NormalizedLaw law = LawUnder(*problem_, theta, problem_->data->records[r]);
-    cached.path = motion.paths.front().path;
-    cached.path.runs.clear();
-    for (const MovedPath* side : BearingPaths(motion, law)) {
-      const std::size_t i = cached.path.runs.size();
-      const MovedPath& on = side != nullptr ? *side : motion.paths.front();
-      cached.path.runs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1),
-                                  BranchAt(on.path, on.samples[i])});
-    }
-    return cached.path;
-  }
   const models::InitialContact initial = InitialOf(r, theta);
   if (cached.unloaded != initial.unloaded_displacement ||
       cached.path.asymmetry != initial.asymmetry) {
@@ -187,46 +164,6 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
 
 void Response::Evaluate(std::span<const double> theta, std::span<double> t) {
   Differentiate(theta, t, {});
-}
-
-void Response::DifferentiateByOrigins(std::span<const double> theta, std::size_t r,
-                                      models::OriginSensitivity& sensitivity) {
-  const ScaledRecord& record = problem_->data->records[r];
-  const models::NormalizedLaw law = LawUnder(*problem_, theta, record);
-  if (has_moved_) {
-    const Motion& motion = MotionOf(r, theta);
-    const std::vector<const MovedPath*> bearing = BearingPaths(motion, law);
-    std::vector<double> slope(record.size());
-    std::vector<double> gain(record.size());
-    for (const MovedPath& side : motion.paths) {
-      response_.DifferentiateByOrigins(*problem_->model, law, side.path, side.displacement,
-                                       sensitivity);
-      for (std::size_t i = 0; i < record.size(); ++i) {
-        if (bearing[i] != &side) continue;
-        slope[i] = sensitivity.sample_slope[side.samples[i]];
-        gain[i] = sensitivity.sample_gain[side.samples[i]];
-      }
-    }
-    sensitivity.sample_slope = std::move(slope);
-    sensitivity.sample_gain = std::move(gain);
-  } else {
-    response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, theta), record.displacement,
-                                     sensitivity);
-  }
-  const bool is_state = IsStateOfJoint(*problem_, record);
-  std::vector<double> state(is_state ? record.size() : 0);
-  if (is_state) DifferentiatePath(theta, r, state, {});
-  Eigen::ArrayXd slip_factors = Eigen::ArrayXd::Ones(std::ssize(record.displacement));
-  if (slip_varies_) slip_factors = SlipOf(record, theta).factor;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    double factor = slip_factors[static_cast<Eigen::Index>(i)];
-    if (is_state) {
-      factor *= models::JointForceSlope(state[i], LoadRatioAt(record, i),
-                                        problem_->parameters.AsymmetryAt(theta));
-    }
-    sensitivity.sample_slope[i] *= factor;
-    sensitivity.sample_gain[i] *= factor;
-  }
 }
 
 models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) const {

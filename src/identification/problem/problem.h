@@ -63,10 +63,7 @@ class Response {
   void Evaluate(std::span<const double> theta, std::span<double> t);
   void Differentiate(std::span<const double> theta, std::span<double> t,
                      const ResponseColumns& columns);
-  /// Differentiates one record by its branches' starts, for fits of turning points.
-  void DifferentiateByOrigins(std::span<const double> theta, std::size_t record,
-                              models::OriginSensitivity& sensitivity);
-  /// Returns the loading path of a record of the problem that is bound, of its samples.
+  /// Returns the loading path of a record of the problem that is bound, whose contact is not moved.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
