@@ -60,7 +60,6 @@ int main() {
 
   identification::FitOptions options;
   options.initial_states = {models::InitialState::kVirgin};
-  options.function_tolerance = 1e-16;
   const loop::RecordView record(displacement, force);
   identification::Fitter fitter(options);
   const identification::FitResult& fit = fitter.Fit(record);
@@ -75,7 +74,7 @@ int main() {
   for (const char* name : {"sigma", "alpha", "slip_force"}) {
     const double difference = same.Find(name).Value() / fit.Find(name)->value - 1;
     std::printf("%-12s differs from the fit by %.1e\n", name, difference);
-    agrees = agrees && std::abs(difference) < 1e-8;
+    agrees = agrees && std::abs(difference) < 1e-5;  // a fit ends where a step gains 1e-10
   }
 
   constexpr double kPrior = 1.0 / 3;

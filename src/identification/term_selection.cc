@@ -142,9 +142,8 @@ bool StopsAtLimit(const FitResult& fit) {
     const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
                              estimate.status == ParameterStatus::kAtUpperBound;
     const Term& term = *TermOfParameter(estimate.name);
-    const bool may_end = term.presence == Presence::kAlways ||
-                         term.theory_bound != TheoryBound::kNone ||
-                         term.id == TermId::kDisplacementOffset;
+    const bool may_end = term.presence == Presence::kAlways || term.lowest_is_of_theory ||
+                         term.highest_is_of_theory || term.id == TermId::kDisplacementOffset;
     return is_at_bound && !may_end;
   });
 }

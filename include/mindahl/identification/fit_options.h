@@ -72,12 +72,8 @@ struct FitOptions {
   std::map<std::string, double> start{};     ///< replaces the starting value found from the data
   std::map<std::string, Interval> bounds{};  ///< replaces the default bounds
 
-  /// The solver stops when a step can lower the cost by function_tolerance · cost at the most …
-  double function_tolerance = 1e-10;
-  /// … or |Δθ| < 1e-13·(|θ| + 1e-13), θ non-dimensional …
-  /// … or 20 steps together raise twice the log-likelihood by less than 1e-3 …
-  /// … or it has made this many steps, or three times as many where it ends at a bound: then the
-  /// result is not converged.
+  /// Steps of a search, or three times as many where it ends at a bound: one that makes them all
+  /// has not converged.
   int max_iterations = 500;
 
   Thresholds thresholds{};

@@ -30,12 +30,10 @@ struct TermUnits {
   double length = 1.0;                  ///< [m]
   double half_duration = 1.0;           ///< [s], or samples where the record has no time
   double cycle = 1.0;                   ///< [s], or samples: of the record's cycles, on average
-  double covariate = 1.0;               ///< half the range of a covariate's column, in its unit
   double force_sense = 1.0;             ///< ±1: the force's sign in the file
   double force_reference = 0.0;         ///< [N], subtracted from the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
   double speed = 1.0;                   ///< velocity [m/s] that is scaled to one
-  double speed_resolution = 0.0;        ///< resolution of the velocity, scaled; 0 where it is exact
   double reference_speed = 1.0;         ///< scaled: its mean in the middle third of the strokes
 };
 
@@ -54,10 +52,6 @@ enum class ContactMotion {
   kLate,       ///< at the displacement of an earlier time
   kBehindGap,  ///< at the displacement less what a gap takes of it
 };
-
-/// Names the default bounds that are ends of the theory's: Jenkins' α, no slip force at rest, no
-/// gap. At the others a search that stops is cut short.
-enum class TheoryBound { kNone, kLower, kUpper, kBoth };
 
 /// The rows of the table, in their order, which is the order of the parameters of a fit.
 enum class TermId : std::size_t {
@@ -120,7 +114,10 @@ struct Term {
   /// Name of the term without which this one cannot be fitted; empty: none.
   std::string_view needs = {};
   ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
-  TheoryBound theory_bound = TheoryBound::kNone;
+  /// The default bound is an end of the theory's: Jenkins' α, no slip force at rest, no gap. At the
+  /// others a search that stops is cut short.
+  bool lowest_is_of_theory = false;
+  bool highest_is_of_theory = false;
   bool is_never_negative = false;  ///< a mass or a damping that is stands for something else
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;

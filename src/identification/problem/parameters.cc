@@ -209,9 +209,8 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  const TheoryBound of_theory = parameter.term->theory_bound;
-  return of_theory != TheoryBound::kBoth &&
-         of_theory != (side == BoundSide::kLower ? TheoryBound::kLower : TheoryBound::kUpper);
+  const Term& term = *parameter.term;
+  return side == BoundSide::kLower ? !term.lowest_is_of_theory : !term.highest_is_of_theory;
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,

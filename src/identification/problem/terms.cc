@@ -64,8 +64,8 @@ constexpr Term SlipChange(std::string_view name, std::string_view meaning, std::
 
 /// Makes an exponent of the speed, of a force that another term scales.
 constexpr Term Exponent(std::string_view name, std::string_view meaning, std::string_view needs,
-                        std::string_view group, double lowest, TheoryBound theory_bound,
-                        std::string_view shapes = {}) {
+                        std::string_view group, double lowest, bool lowest_is_of_theory,
+                        bool highest_is_of_theory = false, std::string_view shapes = {}) {
   return {.name = name,
           .meaning = meaning,
           .lowest = lowest,
@@ -76,7 +76,8 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
           .start = 0.5,
           .shapes = shapes,
           .needs = needs,
-          .theory_bound = theory_bound,
+          .lowest_is_of_theory = lowest_is_of_theory,
+          .highest_is_of_theory = highest_is_of_theory,
           .group = group};
 }
 
@@ -95,7 +96,7 @@ constexpr std::array kTermRows = {
          .lowest = 0.0,
          .highest = kHighestShapeExponent,
          .longest_step = 1.0,
-         .theory_bound = TheoryBound::kLower},
+         .lowest_is_of_theory = true},
     Term{.name = "slip_force",
          .unit = "N",
          .meaning = "Tc",
@@ -141,7 +142,7 @@ constexpr std::array kTermRows = {
     Exponent("speed_exponent",
              "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
              "the viscous force",
-             "viscous", "speed_exponent", kLeastSpeedExponent, TheoryBound::kNone, "viscous"),
+             "viscous", "speed_exponent", kLeastSpeedExponent, false, false, "viscous"),
     Term{.name = "inertia",
          .unit = "kg",
          .meaning = "M of an additional force M·d²δ/dt²",
@@ -165,9 +166,9 @@ constexpr std::array kTermRows = {
          .has_start = true,
          .start = 0.3,
          .needs = "slip_speed_exponent",
-         .theory_bound = TheoryBound::kUpper},
+         .highest_is_of_theory = true},
     Exponent("slip_speed_exponent", "m, likewise", "slip_speed", "slip_speed",
-             kLeastSlipSpeedExponent, TheoryBound::kLower),
+             kLeastSlipSpeedExponent, true),
     SlipChange(
         "slip_trend",
         "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 at its "
@@ -183,9 +184,9 @@ constexpr std::array kTermRows = {
          .has_start = true,
          .start = 0.3,
          .needs = "drag_exponent",
-         .theory_bound = TheoryBound::kBoth},
-    Exponent("drag_exponent", "m, likewise", "drag_fraction", "", kLeastSpeedExponent,
-             TheoryBound::kBoth),
+         .lowest_is_of_theory = true,
+         .highest_is_of_theory = true},
+    Exponent("drag_exponent", "m, likewise", "drag_fraction", "", kLeastSpeedExponent, true, true),
     Term{.name = "plateau_curvature",
          .unit = "N/m²",
          .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
@@ -230,7 +231,7 @@ constexpr std::array kTermRows = {
         .longest_step = 0.1,
         .powers = kLengthUnit,
         .motion = ContactMotion::kBehindGap,
-        .theory_bound = TheoryBound::kLower,
+        .lowest_is_of_theory = true,
         .group = "backlash"},
     Term{.name = "covariate",
          .unit = "N/unit",
