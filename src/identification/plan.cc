@@ -78,10 +78,12 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   Candidate candidate(data, options, options.initial_states);
   const Problem& problem = candidate.problem;
   Solution& solution = candidate.solution;
-  const std::vector<double> theta = GivenStart(problem.parameters, options)->theta;
-  solution.theta = theta;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;
+  ThinnedRecords thinned(data);
+  FindStartsOf(candidate, thinned, options, std::numeric_limits<double>::infinity(), solver);
+  const std::vector<double> theta = candidate.starts.front().theta;
+  solution.theta = theta;
   Noise noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
   if (drawn) FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
   solution.theta = theta;
