@@ -30,7 +30,7 @@ SYSTEM = re.compile(r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|gcc_s|st
 BUNDLED = re.compile(r"lib(fmt|z|md)\.so.*")  # MIT, Zlib, BSD
 # Debian packages whose headers are compiled into the extension.
 COMPILED = ("libceres-dev", "libeigen3-dev", "nlohmann-json3-dev", "libcli11-dev", "libtomlplusplus-dev",
-            "pybind11-dev", "libfmt-dev", "zlib1g-dev", "libmd-dev")
+            "pybind11-dev", "libfmt-dev", "zlib1g-dev")
 
 
 def bundle(extension, package):

@@ -6,15 +6,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(Threads REQUIRED)
 find_package(ZLIB 1.2 REQUIRED)
-
 find_package(Iconv REQUIRED)
-
-# libmd has no package config: md is this library here, and -lmd to users of what is installed.
-find_path(LIBMD_INCLUDE_DIR sha2.h REQUIRED)
-find_library(LIBMD_LIBRARY md REQUIRED)
-add_library(md UNKNOWN IMPORTED)
-set_target_properties(md PROPERTIES IMPORTED_LOCATION ${LIBMD_LIBRARY}
-  INTERFACE_INCLUDE_DIRECTORIES ${LIBMD_INCLUDE_DIR})
 
 if(MINDAHL_BUILD_PROGRAM)
   # CLI11 is header-only and Debian ships its package config.

@@ -15,7 +15,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libceres-dev libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-  zlib1g-dev libboost-dev libmd-dev
+  zlib1g-dev libboost-dev
   librsvg2-bin jq python3 help2man
 )
 for group in "$@"; do

@@ -46,9 +46,9 @@ py::tuple RunCommand(const std::vector<std::string>& words) {
 }
 
 /// Returns the state of a source of a batch, which other processes give back: name, fault, done,
-/// notes, JSON of the fit and digest.
+/// notes and JSON of the fit.
 py::tuple StateOf(const BatchEntry& entry) {
-  return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, entry.fit, entry.sha256);
+  return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, entry.fit);
 }
 
 std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
@@ -60,7 +60,6 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
     entry.done = state[2].cast<bool>();
     entry.notes = state[3].cast<std::vector<std::string>>();
     entry.fit = state[4].cast<std::string>();
-    entry.sha256 = state[5].cast<std::string>();
   }
   return entries;
 }

@@ -22,7 +22,7 @@ struct BatchCommandOptions {
   std::string report_directory;
 };
 
-void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
+void RunBatch(const BatchCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
   Validate(request.contact);  // before a directory is made
@@ -34,9 +34,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
     std::filesystem::create_directory(directory, error);
     if (error) Refuse("--report: cannot make '{}': {}", directory.string(), error.message());
     write_page = [&](const report::Report& report, std::size_t k) {
-      io::WriteFileAtomically(
-          directory / request::PageName(k),
-          ToPage(report, ProvenanceOf(console.command_line, {&request.files[k], 1})));
+      io::WriteFileAtomically(directory / request::PageName(k),
+                              ToPage(report, console.command_line));
     };
   }
   const std::vector<BatchEntry> fits =
@@ -49,8 +48,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!directory.empty()) {
-    io::WriteFileAtomically(directory / "index.html",
-                            IndexPage(fits, ProvenanceOf(console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(directory / "index.html", IndexPage(fits, console.command_line));
   }
   WriteAnswer(options.json_path, console, ToJson(fits, options.output),
               ToText(fits, options.output));
@@ -85,7 +83,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
-  OnRun(command, [options, &command, &console] { RunBatch(*options, command, console); });
+  OnRun(command, [options, &console] { RunBatch(*options, console); });
 }
 
 }  // namespace mindahl::cli

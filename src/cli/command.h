@@ -201,18 +201,11 @@ void WriteAnswer(const std::string& json_path, Console& console, std::string_vie
 /// value is called PATH or DIR writes there, "-" to standard output; one called FILE is read.
 void OnRun(CLI::App& command, std::function<void()> run);
 
-/// Returns the files that a command was given to read, a configuration the last.
-std::vector<std::string> InputsOf(const CLI::App& command);
-
 /// Refuses a file that is given twice, by one name or by two: its samples would count twice.
 /// @throws InputError naming both
 void RequireDistinctFiles(std::span<const std::string> files);
 
 /// Returns the command line as a shell takes it, words in single quotes where they need them.
 std::string CommandLine(int argc, const char* const* argv);
-
-/// Returns what is needed to make a result again: the command line, and digests of the files.
-report::Provenance ProvenanceOf(const std::string& command_line,
-                                std::span<const std::string> files);
 
 }  // namespace mindahl::cli

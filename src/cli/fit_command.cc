@@ -15,7 +15,7 @@ struct FitCommandOptions {
   bool has_details = false;
 };
 
-void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
+void RunFit(const FitCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
   Validate(request);
@@ -30,8 +30,7 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
     io::WritePlot(report::ToPlot(report), options.plot_path);
   }
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path,
-                            ToPage(report, ProvenanceOf(console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(options.report_path, ToPage(report, console.command_line));
   }
   if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
@@ -75,7 +74,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
-  OnRun(command, [options, &command, &console] { RunFit(*options, command, console); });
+  OnRun(command, [options, &console] { RunFit(*options, console); });
 }
 
 }  // namespace mindahl::cli

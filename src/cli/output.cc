@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include "cli/command.h"
-#include "io/source.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 
@@ -52,6 +51,18 @@ void RequireWritable(const std::string& option, const std::string& path) {
   }
 }
 
+/// Returns the files that a command was given to read, a configuration the last.
+std::vector<std::string> InputsOf(const CLI::App& command) {
+  std::vector<std::string> inputs;
+  for (const CLI::App* app : {&command, command.get_parent()}) {
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->get_type_name() != "FILE") continue;
+      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+    }
+  }
+  return inputs;
+}
+
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
   std::vector<std::string> outputs;
@@ -77,17 +88,6 @@ void RequireOutputs(const CLI::App& command) {
 
 }  // namespace
 
-std::vector<std::string> InputsOf(const CLI::App& command) {
-  std::vector<std::string> inputs;
-  for (const CLI::App* app : {&command, command.get_parent()}) {
-    for (const CLI::Option* option : app->get_options()) {
-      if (option->get_type_name() != "FILE") continue;
-      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
-    }
-  }
-  return inputs;
-}
-
 void OnRun(CLI::App& command, std::function<void()> run) {
   command.callback([&command, run = std::move(run)] {
     RequireOutputs(command);
@@ -103,15 +103,6 @@ void RequireDistinctFiles(std::span<const std::string> files) {
              files[i]);
     }
   }
-}
-
-report::Provenance ProvenanceOf(const std::string& command_line,
-                                std::span<const std::string> files) {
-  report::Provenance provenance{.command = command_line, .inputs = {}};
-  for (const std::string& file : files) {
-    provenance.inputs.push_back({.name = file, .sha256 = io::Sha256OfFile(file)});
-  }
-  return provenance;
 }
 
 std::string CommandLine(int argc, const char* const* argv) {

@@ -146,7 +146,7 @@ std::string ToText(const TrackedTest& test, const Json& quantities) {
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
-std::string ToPage(const TrackedTest& test, const report::Provenance& provenance) {
+std::string ToPage(const TrackedTest& test, std::string_view command) {
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   std::string figures;
   std::size_t count = 0;
@@ -178,7 +178,7 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
               report::TableHtml("cycles with a flag", FlagRows(test)) +
                   report::ParagraphHtml("Errors assume that the model is adequate: check some "
                                         "cycles with mindahl fit.")) +
-          report::ProvenanceHtml(provenance));
+          report::ProvenanceHtml(command));
 }
 
 // --- the run
@@ -353,8 +353,7 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
   const TrackedTest test = TrackRun(options).Track();
   console.exit_status = test.established() ? kDone : kNotEstablished;
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path,
-                            ToPage(test, ProvenanceOf(console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(options.report_path, ToPage(test, console.command_line));
   }
   const Json quantities = QuantityRows(test);
   WriteAnswer(options.json_path, console, ToJson(test, quantities), ToText(test, quantities));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <iconv.h>
-#include <sha2.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -170,17 +169,6 @@ void LinePieces::FindEncoding(std::string_view head) {
     note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding",
                         name_, encoding_ == "CP932" ? "Shift-JIS" : "Latin-1 (Windows-1252)");
   }
-}
-
-std::optional<std::string> Sha256OfFile(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  std::string digest(SHA256_DIGEST_STRING_LENGTH, '\0');
-  if (SHA256File(path.c_str(), digest.data()) == nullptr) {
-    ThrowCannotRead(path.string(), std::strerror(errno));
-  }
-  digest.pop_back();  // the zero byte at its end
-  return digest;
 }
 
 }  // namespace mindahl::io

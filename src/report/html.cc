@@ -115,18 +115,11 @@ std::string SideBySide(std::string_view parts) {
   return parts.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", parts);
 }
 
-std::string ProvenanceHtml(const Provenance& provenance) {
-  std::vector<TableLine> inputs;
-  inputs.reserve(provenance.inputs.size());
-  for (const InputFile& input : provenance.inputs) {
-    inputs.push_back({input.name, {input.sha256.value_or("not a regular file, read once")}});
-  }
-  return SectionHtml("How to reproduce this page",
-                     (provenance.command.empty() ? ""
-                                                 : fmt::format("<pre><code>{}</code></pre>\n",
-                                                               Prose(provenance.command))) +
-                         ParagraphHtml(fmt::format("mindahl {}", Version())) +
-                         TableHtml("files read", {"file", "SHA-256 of its bytes"}, inputs));
+std::string ProvenanceHtml(std::string_view command) {
+  return SectionHtml(
+      "How to reproduce this page",
+      (command.empty() ? "" : fmt::format("<pre><code>{}</code></pre>\n", Prose(command))) +
+          ParagraphHtml(fmt::format("mindahl {}", Version())));
 }
 
 }  // namespace mindahl::report

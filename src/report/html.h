@@ -56,7 +56,7 @@ std::string FigureHtml(const FigureText& said, int height, std::string_view elem
 /// Returns figures, or tables, side by side where there is room; "" without any.
 std::string SideBySide(std::string_view parts);
 
-/// Returns what it takes to make the result again.
-std::string ProvenanceHtml(const Provenance& provenance);
+/// Returns the command, "" where there was none, and the version that make the result again.
+std::string ProvenanceHtml(std::string_view command);
 
 }  // namespace mindahl::report

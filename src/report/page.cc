@@ -103,13 +103,13 @@ std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) 
 }
 
 /// Returns the command that takes the next step.
-std::string NextHtml(const Report& report, const Provenance& provenance) {
+std::string NextHtml(const Report& report, std::string_view command) {
   if (!report.next) return "";
-  const std::string command = provenance.command.empty() ? "mindahl fit FILE" : provenance.command;
   return SectionHtml("Next step",
                      fmt::format("{}<pre><code>{} {}</code></pre>\n",
                                  ParagraphHtml(NextStatement(report, *report.next) + ':'),
-                                 Prose(command), Prose(report.next->options)));
+                                 Prose(command.empty() ? "mindahl fit FILE" : command),
+                                 Prose(report.next->options)));
 }
 
 /// Returns friction (the slip force without a load), σ and α with their intervals as bars, α's with
@@ -175,12 +175,12 @@ std::string IntervalsHtml(const Report& report) {
 
 }  // namespace
 
-std::string ToPage(const Report& report, const Provenance& provenance) {
+std::string ToPage(const Report& report, std::string_view command) {
   const std::string word(VerdictWord(report));
   const std::string title = fmt::format("{}: {}", NameOf(report.files()), word);
   if (report.failed()) {
-    return PageHtml(
-        title, VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(provenance));
+    return PageHtml(title,
+                    VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(command));
   }
   const io::Plot figure = ToPlot(report);
   return PageHtml(
@@ -199,13 +199,13 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                       .attributes = " class=\"hidden\"",
                       .element = "p"},
                      figure.panels[1]),
-          IntervalsHtml(report), NextHtml(report, provenance),
+          IntervalsHtml(report), NextHtml(report, command),
           SectionHtml("Answer", LinesHtml("", AnswerLines(report)) +
                                     TableHtml(fmt::format("models compared, rms in {}",
                                                           report.units.response),
                                               ComparedModels(report))),
           SectionHtml("Details, in SI units", LinesHtml("", DetailLines(report))),
-          ProvenanceHtml(provenance)));
+          ProvenanceHtml(command)));
 }
 
 }  // namespace mindahl::report

@@ -14,7 +14,6 @@
 #include <set>
 #include <utility>
 
-#include "io/source.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "report/html.h"
@@ -79,8 +78,7 @@ Json RowOf(const BatchEntry& entry) {
               {"contact_radius", At(fit, "/contact/contact_radius/value")},
               {"warnings", fmt::format("{}", fmt::join(codes, " "))},
               {"fault", entry.fault},
-              {"version", Version()},
-              {"sha256", entry.sha256}});
+              {"version", Version()}});
   return row;
 }
 
@@ -147,7 +145,6 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
   entry.file = name;
   std::string& fault = entry.fault;
   try {
-    entry.sha256 = io::Sha256OfFile(name).value_or("");
     const report::Report report = fit();
     entry.notes = report.notes;
     entry.fit = ToJson(report);
@@ -228,7 +225,7 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
                                               {"repeats", RepeatRows(TableRows(entries))}});
 }
 
-std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
+std::string IndexPage(std::span<const BatchEntry> entries, std::string_view command) {
   const auto done =
       std::ranges::count_if(entries, [](const BatchEntry& entry) { return entry.fault.empty(); });
   std::vector<report::TableLine> files;
@@ -255,7 +252,7 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
           report::SectionHtml(
               "If these are repeats",
               repeats + (HasSeveralLaws(table) ? report::ParagraphHtml(kSeveralLaws) : "")) +
-          report::ProvenanceHtml(provenance));
+          report::ProvenanceHtml(command));
 }
 
 }  // namespace mindahl::request

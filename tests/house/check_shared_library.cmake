@@ -24,7 +24,7 @@ if(at LESS 0)
   message(FATAL_ERROR "nm does not show what the library has")
 endif()
 # A function of each folder of src/ that has headers of its own.
-foreach(hidden IsTerminal io::Sha256OfFile identification::Problem
+foreach(hidden IsTerminal io::ForMessage identification::Problem
         identification::FindStartsOf report::ToSentence)
   string(REGEX MATCH "[^\n]* [TVWu] mindahl::${hidden}[^A-Za-z_][^\n]*" found "${symbols}")
   if(found)

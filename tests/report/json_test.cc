@@ -89,8 +89,8 @@ TEST(MakeReport, RefusesAnotherNumberOfRecords) {
 
 using testing::MadeRecord;
 
-std::string Page(ReportInput input, const Provenance& provenance = {}) {
-  return ToPage(MakeReport(std::move(input)), provenance);
+std::string Page(ReportInput input, std::string_view command = {}) {
+  return ToPage(MakeReport(std::move(input)), command);
 }
 
 TEST(Page, HasTheAnswerTheLoopAndItsResidual) {
@@ -127,7 +127,7 @@ TEST(Page, OfAFitThatFailedSaysWhy) {
 TEST(Page, EscapesWhatItIsGiven) {
   ReportInput input = MadeInput();
   input.records.front().name = "<b>&.csv";
-  const std::string page = Page(std::move(input), {"mindahl fit '<b>&.csv'", {}});
+  const std::string page = Page(std::move(input), "mindahl fit '<b>&.csv'");
   EXPECT_THAT(page, HasSubstr("&lt;b&gt;&amp;.csv"));
   EXPECT_THAT(page, Not(HasSubstr("<b>&.csv")));
 }
@@ -135,7 +135,7 @@ TEST(Page, EscapesWhatItIsGiven) {
 TEST(Page, HasTheCommandOfTheNextStep) {
   ReportInput input = MadeInput();
   input.next = testing::MadeStep("--terms lag");
-  EXPECT_THAT(Page(std::move(input), {"mindahl fit a.csv", {}}),
+  EXPECT_THAT(Page(std::move(input), "mindahl fit a.csv"),
               HasSubstr("mindahl fit a.csv <span class=\"option\">--terms</span> lag"));
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/report/report.h"
@@ -18,7 +19,6 @@ struct BatchEntry {
   bool done = false;                    ///< fitted, and Established()
   std::string fit;                      ///< its JSON, as `mindahl fit --json` writes it; or ""
   std::vector<std::string> notes;       ///< assumptions of the run, one sentence each
-  std::string sha256;                   ///< SHA-256 of the file; "" if it is none
   std::string verdict;                  ///< one word for the fit's adequacy; "" where there is none
   std::vector<std::string> parameters;  ///< σ, α and Tc in words; empty where there is no fit
 };
@@ -54,7 +54,7 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
 
 /// Returns the index of the entries' pages: each with its verdict and parameters, those alone that
 /// it identifies, what failed and why, and the scatter between files against their stated errors.
-std::string IndexPage(std::span<const BatchEntry> entries,
-                      const report::Provenance& provenance = {});
+/// @param command  as of report::ToPage()
+std::string IndexPage(std::span<const BatchEntry> entries, std::string_view command = {});
 
 }  // namespace mindahl::request
