@@ -85,8 +85,8 @@ py::tuple FitOne(const RecordFile& record, const request::FitRequest& request, i
 /// The rows of the table, the table, JSON and text of a batch, and whether all is done.
 py::tuple BatchOf(const std::vector<py::tuple>& states) {
   const std::vector<BatchEntry> entries = EntriesOf(states);
-  return py::make_tuple(request::TableJson(entries), request::TableCsv(entries),
-                        request::ToJson(entries, ""), request::ToText(entries, ""),
+  const request::BatchAnswer answer = request::AnswerOf(entries);
+  return py::make_tuple(answer.rows, answer.table, answer.json, answer.text,
                         std::ranges::all_of(entries, &BatchEntry::done));
 }
 

@@ -46,12 +46,12 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
       Say("batch: warning", {fmt::format("{}: {}", fit.file, fit.fault)}, console);
     }
   }
-  io::WriteFileAtomically(options.output, TableCsv(fits));
+  const request::BatchAnswer answer = request::AnswerOf(fits, options.output, console.command_line);
+  io::WriteFileAtomically(options.output, answer.table);
   if (!directory.empty()) {
-    io::WriteFileAtomically(directory / "index.html", IndexPage(fits, console.command_line));
+    io::WriteFileAtomically(directory / "index.html", answer.index);
   }
-  WriteAnswer(options.json_path, console, ToJson(fits, options.output),
-              ToText(fits, options.output));
+  WriteAnswer(options.json_path, console, answer.json, answer.text);
   console.exit_status = std::ranges::all_of(fits, &BatchEntry::done) ? kDone : kNotEstablished;
 }
 

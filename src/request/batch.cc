@@ -44,8 +44,8 @@ constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
                                   Repeated{"energy_per_cycle", "", "J"}};
 
 /// Returns the row of a file in the table.
-Json RowOf(const BatchEntry& entry) {
-  const Json fit = entry.fit.empty() ? Json() : Json::parse(entry.fit);
+/// @param fit  its JSON, null where it has none
+Json RowOf(const BatchEntry& entry, const Json& fit) {
   Json row = {{"file", entry.file},
               {"done", entry.done},
               {"samples", At(fit, "/input/samples")},
@@ -82,24 +82,12 @@ Json RowOf(const BatchEntry& entry) {
   return row;
 }
 
-Json TableRows(std::span<const BatchEntry> entries) { return report::ListOf(entries, &RowOf); }
-
-/// True if fits that are done are by several laws: parameters of one are no repeats of another's.
-bool HasSeveralLaws(const Json& table) {
-  std::set<Json> laws;
-  for (const Json& row : table) {
-    if (row["done"].get<bool>()) laws.insert(row["model"]);
-  }
-  return laws.size() > 1;
-}
-
 constexpr std::string_view kSeveralLaws =
     "fits are by several laws, whose parameters are not compared: --model NAME fits all by one";
 
 /// Returns the scatter of each quantity that two files or more have, next to their stated errors:
 /// root mean square, null of what states none.
-Json RepeatRows(const Json& table) {
-  const bool has_several_laws = HasSeveralLaws(table);
+Json RepeatRows(const Json& table, bool has_several_laws) {
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
     const std::string name(quantity.name);
@@ -134,15 +122,38 @@ Json RepeatRows(const Json& table) {
   return repeats;
 }
 
-const std::string kNone = "–";  // in the index of pages
+/// Returns the index of the entries' pages.
+/// @param note  on the repeats
+std::string IndexPage(std::span<const BatchEntry> entries, std::string_view title,
+                      const Json& repeats, std::string_view note, std::string_view command) {
+  std::vector<report::TableLine> files;
+  for (const BatchEntry& entry : entries) {
+    std::vector<std::string> cells = {fmt::format("{}", files.size() + 1), entry.verdict};
+    cells.insert(cells.end(), entry.parameters.begin(), entry.parameters.end());
+    cells.resize(2 + kParameters.size());
+    cells.push_back(entry.fault);
+    files.push_back({entry.file, std::move(cells), report::JudgementOf(entry.verdict),
+                     entry.fit.empty() ? "" : PageName(files.size())});
+  }
+  return report::PageHtml(
+      title,
+      report::SectionHtml(
+          "Files", report::TableHtml("one fit a file; only identified quantities have a number",
+                                     {"file", "number", "verdict", "sigma", "alpha", "slip_force",
+                                      "why not done"},
+                                     files)) +
+          report::SectionHtml(
+              "If these are repeats",
+              report::TableHtml("over the fitted files in which the quantity is known", repeats) +
+                  (note.empty() ? "" : report::ParagraphHtml(note))) +
+          report::ProvenanceHtml(command));
+}
 
 }  // namespace
 
 BatchEntry FitSource(const std::string& name, Strictness strictness,
-                     const std::function<report::Report()>& fit, const WritePage& write_page,
-                     std::size_t k) {
-  BatchEntry entry;
-  entry.file = name;
+                     const std::function<report::Report()>& fit) {
+  BatchEntry entry{.file = name};
   std::string& fault = entry.fault;
   try {
     const report::Report report = fit();
@@ -150,12 +161,10 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
     entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
-    entry.parameters.reserve(kParameters.size());
     for (const char* parameter : kParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
-      entry.parameters.push_back(estimate == nullptr ? kNone : report::ValueText(*estimate));
+      if (estimate != nullptr) entry.parameters.push_back(report::ValueText(*estimate));
     }
-    if (write_page) write_page(report, k);
     if (!entry.done) {
       fault = report.fit.converged ? "not established: the model is not adequate or a free "
                                      "parameter not identifiable"
@@ -168,23 +177,22 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
   } catch (const std::bad_alloc&) {
     fault = name + ": memory ran out";
   }
-  // A page that cannot be written, too, leaves a file that is not done.
-  entry.done = entry.done && fault.empty();
   return entry;
 }
 
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads, const WritePage& write_page) {
-  Validate(request.contact);  // what is wrong with the options is no fault of a file
-  MakeFitOptions(request);
   std::vector<BatchEntry> entries(request.files.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t k = next++; k < entries.size(); k = next++) {
       FitRequest own = request;
       own.files = {request.files[k]};
-      const auto fit = [&own] { return FitRecords(own, ReadRecords(own)); };
-      entries[k] = FitSource(own.files.front(), strictness, fit, write_page, k);
+      entries[k] = FitSource(own.files.front(), strictness, [&] {
+        report::Report report = FitRecords(own, ReadRecords(own));
+        if (write_page) write_page(report, k);
+        return report;
+      });
     }
   };
   std::vector<std::future<void>> workers;
@@ -196,63 +204,36 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
   return entries;
 }
 
-std::string TableCsv(std::span<const BatchEntry> entries) {
-  return report::TableCsv(TableRows(entries));
-}
-
-std::string TableJson(std::span<const BatchEntry> entries) { return Dump(TableRows(entries)); }
-
-std::string ToText(std::span<const BatchEntry> entries, const std::string& output) {
-  const auto done = std::ranges::count_if(entries, &BatchEntry::done);
-  std::string text = fmt::format("{} of {} files fitted{}{}\n", done, entries.size(),
-                                 output.empty() ? "" : ", in ", output);
-  const Json table = TableRows(entries);
-  const Json repeats = RepeatRows(table);
-  if (!repeats.empty()) text += "\nif these are repeats:\n" + report::TableText(repeats);
-  if (HasSeveralLaws(table)) text += fmt::format("{}\n", kSeveralLaws);
-  return text;
-}
-
-std::string ToJson(std::span<const BatchEntry> entries, const std::string& output) {
-  Json files = report::ListOf(entries, [](const BatchEntry& entry) -> Json {
-    return {{"file", entry.file},
-            {"done", entry.done},
-            {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-            {"fit", entry.fit.empty() ? Json() : Json::parse(entry.fit)}};
-  });
-  return report::Document("mindahl.batch/1", {{"output", output.empty() ? Json() : Json(output)},
-                                              {"files", std::move(files)},
-                                              {"repeats", RepeatRows(TableRows(entries))}});
-}
-
-std::string IndexPage(std::span<const BatchEntry> entries, std::string_view command) {
-  const auto done =
-      std::ranges::count_if(entries, [](const BatchEntry& entry) { return entry.fault.empty(); });
-  std::vector<report::TableLine> files;
+BatchAnswer AnswerOf(std::span<const BatchEntry> entries, const std::string& output,
+                     std::string_view command) {
+  Json table = Json::array();
+  Json files = Json::array();
+  std::set<Json> laws;
   for (const BatchEntry& entry : entries) {
-    std::vector<std::string> cells = {fmt::format("{}", files.size() + 1),
-                                      entry.verdict.empty() ? kNone : entry.verdict};
-    cells.insert(cells.end(), entry.parameters.begin(), entry.parameters.end());
-    cells.resize(2 + kParameters.size(), kNone);
-    cells.push_back(entry.fault);
-    files.push_back({entry.file, std::move(cells),
-                     entry.verdict.empty() ? "" : report::JudgementOf(entry.verdict),
-                     entry.fit.empty() ? "" : PageName(files.size())});
+    const Json fit = entry.fit.empty() ? Json() : Json::parse(entry.fit);
+    table.push_back(RowOf(entry, fit));
+    files.push_back({{"file", entry.file},
+                     {"done", entry.done},
+                     {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
+                     {"fit", fit}});
+    if (entry.done) laws.insert(At(fit, "/model"));
   }
-  const Json table = TableRows(entries);
-  const std::string repeats =
-      report::TableHtml("over the fitted files in which the quantity is known", RepeatRows(table));
-  return report::PageHtml(
-      fmt::format("{} of {} files fitted", done, entries.size()),
-      report::SectionHtml(
-          "Files", report::TableHtml("one fit a file; only identified quantities have a number",
-                                     {"file", "number", "verdict", "sigma", "alpha", "slip_force",
-                                      "why not done"},
-                                     files)) +
-          report::SectionHtml(
-              "If these are repeats",
-              repeats + (HasSeveralLaws(table) ? report::ParagraphHtml(kSeveralLaws) : "")) +
-          report::ProvenanceHtml(command));
+  // Parameters of one law are no repeats of another's.
+  const bool has_several_laws = laws.size() > 1;
+  const std::string_view note = has_several_laws ? kSeveralLaws : "";
+  const Json repeats = RepeatRows(table, has_several_laws);
+  const std::string title = fmt::format(
+      "{} of {} files fitted", std::ranges::count_if(entries, &BatchEntry::done), entries.size());
+  return {.rows = Dump(table),
+          .table = report::TableCsv(table),
+          .json = report::Document("mindahl.batch/1",
+                                   {{"output", output.empty() ? Json() : Json(output)},
+                                    {"files", std::move(files)},
+                                    {"repeats", repeats}}),
+          .text = fmt::format("{}{}{}\n{}{}{}{}", title, output.empty() ? "" : ", in ", output,
+                              repeats.empty() ? "" : "\nif these are repeats:\n",
+                              report::TableText(repeats), note, note.empty() ? "" : "\n"),
+          .index = IndexPage(entries, title, repeats, note, command)};
 }
 
 }  // namespace mindahl::request

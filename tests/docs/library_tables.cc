@@ -79,7 +79,7 @@ Json Columns() {
     columns["track"].push_back(name.substr(0, name.find('\n')));
   }
   const request::BatchEntry entry;
-  const Json batch = Json::parse(request::TableJson({&entry, 1}));
+  const Json batch = Json::parse(request::AnswerOf({&entry, 1}).rows);
   for (const auto& [name, cell] : batch[0].items()) columns["batch"].push_back(name);
   return columns;
 }

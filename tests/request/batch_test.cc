@@ -24,9 +24,8 @@ std::vector<io::RecordFile> CleanRecord() {
 TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
   const auto fit = [] { return FitRecords({}, CleanRecord()); };
   EXPECT_TRUE(FitSource("loop", Strictness::kNone, fit).done);
-  const BatchEntry entry =
-      FitSource("loop", Strictness::kNone, fit,
-                [](const report::Report&, std::size_t) { throw InputError("the disk is full"); });
+  const BatchEntry entry = FitSource(
+      "loop", Strictness::kNone, []() -> report::Report { throw InputError("the disk is full"); });
   EXPECT_FALSE(entry.done);
   EXPECT_EQ(entry.fault, "the disk is full");
 }
@@ -78,7 +77,7 @@ std::vector<BatchEntry> EntriesOf(const std::vector<Made>& made) {
 }
 
 nlohmann::json RepeatsOf(const std::vector<Made>& made) {
-  return nlohmann::json::parse(ToJson(EntriesOf(made), ""))["repeats"];
+  return nlohmann::json::parse(AnswerOf(EntriesOf(made)).json)["repeats"];
 }
 
 constexpr double kNormal95 = 1.959963984540054;
@@ -115,13 +114,13 @@ TEST(Repeats, CompareNoParametersOfSeveralLaws) {
     entries[k].fit = json.dump();
   };
   for (const std::size_t k : {0U, 1U, 2U}) set_law(k, "mindlin-dahl");
-  EXPECT_THAT(ToText(entries, ""), Not(HasSubstr("several laws")));
+  EXPECT_THAT(AnswerOf(entries).text, Not(HasSubstr("several laws")));
   set_law(1, "dahl");
-  const auto repeats = nlohmann::json::parse(ToJson(entries, ""))["repeats"];
+  const auto repeats = nlohmann::json::parse(AnswerOf(entries).json)["repeats"];
   EXPECT_FALSE(repeats.contains("slip_force"));
   EXPECT_EQ(repeats["half_gap"]["files"], 3);
-  EXPECT_THAT(ToText(entries, ""), HasSubstr("fits are by several laws"));
-  EXPECT_THAT(IndexPage(entries), HasSubstr("fits are by several laws"));
+  EXPECT_THAT(AnswerOf(entries).text, HasSubstr("fits are by several laws"));
+  EXPECT_THAT(AnswerOf(entries).index, HasSubstr("fits are by several laws"));
 }
 
 TEST(BatchIndex, LinksPagesAndReportsParametersAndFaults) {
@@ -133,7 +132,7 @@ TEST(BatchIndex, LinksPagesAndReportsParametersAndFaults) {
   entries[1].verdict = "doubtful";
   entries[2].fault = "d.csv:2:1: no number";
   entries[2].done = false;
-  const std::string page = IndexPage(entries);
+  const std::string page = AnswerOf(entries).index;
   EXPECT_THAT(page, HasSubstr("<h1>2 of 3 files fitted</h1>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"page-1.html\">a &lt;b&gt;.csv</a>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"page-2.html\">"));
@@ -169,7 +168,7 @@ BatchEntry EntryOfAllColumns() {
 
 TEST(BatchTable, HasEachNumberInItsColumn) {
   const std::vector<BatchEntry> entries = {EntryOfAllColumns()};
-  const std::string csv = TableCsv(entries);
+  const std::string csv = AnswerOf(entries).table;
   EXPECT_EQ(csv,
             "file,done,samples,model,initial_state,adequacy,cycles,amplitude,peak_force,half_gap,"
             "energy_per_cycle,energy_ratio,sigma,sigma_error,sigma_lower95,"
@@ -188,7 +187,7 @@ TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
   std::vector<BatchEntry> entries = {EntryOfAllColumns(), {}};
   entries[1].file = "c";
   entries[1].fault = "no loop";
-  auto json = nlohmann::json::parse(ToJson(entries, "t.csv"));
+  auto json = nlohmann::json::parse(AnswerOf(entries, "t.csv").json);
   EXPECT_EQ(json["schema"], "mindahl.batch/1");
   EXPECT_EQ(json["output"], "t.csv");
   EXPECT_EQ(json["files"][0]["file"], "a,b.csv");
@@ -199,7 +198,7 @@ TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
   EXPECT_EQ(json["files"][1]["fault"], "no loop");
   EXPECT_TRUE(json["files"][1]["fit"].is_null());
   EXPECT_TRUE(json["repeats"].empty());
-  EXPECT_TRUE(nlohmann::json::parse(ToJson(entries, ""))["output"].is_null());
+  EXPECT_TRUE(nlohmann::json::parse(AnswerOf(entries).json)["output"].is_null());
 }
 
 }  // namespace

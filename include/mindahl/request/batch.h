@@ -15,12 +15,12 @@ namespace mindahl::request {
 /// Holds the fit of one source of a batch, or the fault for which it has none.
 struct BatchEntry {
   std::string file;
-  std::string fault;                    ///< why it is not done; "" where it is
-  bool done = false;                    ///< fitted, and Established()
-  std::string fit;                      ///< its JSON, as `mindahl fit --json` writes it; or ""
-  std::vector<std::string> notes;       ///< assumptions of the run, one sentence each
-  std::string verdict;                  ///< one word for the fit's adequacy; "" where there is none
-  std::vector<std::string> parameters;  ///< σ, α and Tc in words; empty where there is no fit
+  std::string fault = {};                    ///< why it is not done; "" where it is
+  bool done = false;                         ///< fitted, and Established()
+  std::string fit = {};                      ///< its JSON, as `mindahl fit --json` writes it; or ""
+  std::vector<std::string> notes = {};       ///< assumptions of the run, one sentence each
+  std::string verdict = {};                  ///< one word for the fit's adequacy
+  std::vector<std::string> parameters = {};  ///< σ, α and Tc in words
 };
 
 /// Writes the page of the k-th source; an empty function writes no pages.
@@ -32,29 +32,27 @@ inline std::string PageName(std::size_t k) { return "page-" + std::to_string(k +
 /// Fits one source on its own. A fault of the source is one of the entry.
 /// @param fit  reads and fits it
 BatchEntry FitSource(const std::string& name, Strictness strictness,
-                     const std::function<report::Report()>& fit, const WritePage& write_page = {},
-                     std::size_t k = 0);
+                     const std::function<report::Report()>& fit);
 
 /// Fits each of the request's files on its own, in their order whatever the number of threads.
-/// @throws InputError or InvalidArgument for options that break a rule whatever the files are
+/// Options that break a rule, or a page that cannot be written, are a fault of each file.
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads, const WritePage& write_page = {});
 
-/// Returns the table that `mindahl batch --output` writes as CSV, and its rows as JSON.
-std::string TableCsv(std::span<const BatchEntry> entries);
-std::string TableJson(std::span<const BatchEntry> entries);
+/// Holds what `mindahl batch` answers.
+struct BatchAnswer {
+  std::string rows;   ///< of the table, as JSON
+  std::string table;  ///< as CSV, as `--output` writes it
+  std::string json;   ///< of schema mindahl.batch/1, as `--json` writes it
+  std::string text;
+  /// Index of the entries' pages: each with its verdict and parameters, those alone that it
+  /// identifies, what failed and why, and the scatter between files against their stated errors.
+  std::string index;
+};
 
-/// Returns the JSON of schema mindahl.batch/1, as `mindahl batch --json` writes it.
-/// @param output  path of the table; null where it is empty
-std::string ToJson(std::span<const BatchEntry> entries, const std::string& output);
-
-/// Returns the text that `mindahl batch` prints.
-/// @param output  path of the table; not said where it is empty
-std::string ToText(std::span<const BatchEntry> entries, const std::string& output);
-
-/// Returns the index of the entries' pages: each with its verdict and parameters, those alone that
-/// it identifies, what failed and why, and the scatter between files against their stated errors.
+/// @param output   path of the table; null in the JSON and not said where it is empty
 /// @param command  as of report::ToPage()
-std::string IndexPage(std::span<const BatchEntry> entries, std::string_view command = {});
+BatchAnswer AnswerOf(std::span<const BatchEntry> entries, const std::string& output = {},
+                     std::string_view command = {});
 
 }  // namespace mindahl::request
