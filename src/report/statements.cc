@@ -117,8 +117,8 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
      "one load"},
     {"load_not_proportional",
-     "each file alone gives its own μ, from {least:-} to {most:-}: Tc is not in proportion to "
-     "these loads; mindahl batch fits the files apart"},
+     "the half gap over the load goes from {least:-} to {most:-}: Tc is not in proportion to these "
+     "loads; mindahl batch fits the files apart"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination",

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -172,116 +171,51 @@ bool IsRivalled(const FitResult& before, const FitResult& after) {
   });
 }
 
-/// Says where each file alone has a Tc of its own over the load, further apart than their errors: a
-/// load series has one μ, and what the law then misses is no term's.
-std::optional<identification::Finding> FindDisproportion(
-    const FitOptions& options, std::span<const contact::UncertainValue> loads,
-    std::span<const Record> records, const FitResult& fit) {
-  constexpr double kLeastSpread = 0.02;
+/// Says where half gaps of files that slide are not in proportion to their loads: a load series has
+/// one μ, and what the law then misses is no term's.
+std::optional<identification::Finding> FindDisproportion(const FitResult& fit) {
+  constexpr double kLeastSpread = 0.05;
   if (!fit.is_load_series() || fit.adequacy.verdict == AdequacyVerdict::kAdequate) return {};
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  double lowest_upper = least;
-  double highest_lower = 0.0;
-  // Given values of σ and Tc hold at the mean load, not at the load of one file.
-  const auto is_of_series = [](const auto& given) {
-    return given.first != "rig_stiffness" && given.first != "alpha";
-  };
-  FitOptions alone = options;
-  alone.normal_loads.clear();
-  alone.start.clear();
-  alone.bounds.clear();
-  std::erase_if(alone.fixed, is_of_series);
-  std::erase_if(alone.priors, is_of_series);
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    alone.initial_states = {fit.records[r].initial_state};
-    const double load = *fit.records[r].normal_load;
-    const double uncertainty =
-        loads.size() == records.size() ? 2 * loads[r].standard_error / load : 0.0;
-    FitResult found;
-    try {
-      found = identification::Fit(records.subspan(r, 1), alone, Depth::kIntervals);
-    } catch (const InvalidArgument&) {
-      return {};  // too few samples for one of them
-    }
-    const identification::ParameterEstimate* slip_force = found.Find("slip_force");
-    if (slip_force == nullptr || !slip_force->is_known() || !slip_force->upper95) return {};
-    least = std::min(least, slip_force->value / load);
-    most = std::max(most, slip_force->value / load);
-    lowest_upper = std::min(lowest_upper, *slip_force->upper95 / load * (1 + uncertainty));
-    highest_lower = std::max(highest_lower, *slip_force->lower95 / load * (1 - uncertainty));
+  std::vector<double> ratios;
+  for (const identification::RecordFit& record : fit.records) {
+    if (!loop::Slides(record.facts)) return {};
+    ratios.push_back(*record.facts.half_gap / *record.normal_load);
   }
-  if (!(highest_lower > lowest_upper) || !(most > (1 + kLeastSpread) * least)) return {};
+  const auto [least, most] = std::ranges::minmax(ratios);
+  if (!(most > (1 + kLeastSpread) * least)) return {};
   return identification::Finding{.code = "load_not_proportional",
                                  .numbers = {{"least", least}, {"most", most}}};
 }
 
-/// Holds what may make a fit better, and the option that does it.
-struct Trial {
-  FitOptions options;
-  report::NextStep step;
-};
-
-/// Leaves out the first cycle, whose past is not recorded, where most of what the law misses lies
-/// there.
-std::optional<Trial> WithoutFirstCycle(const FitOptions& options, const FitResult& fit) {
-  constexpr double kWorse = 4.0;
-  constexpr std::size_t kFewestCycles = 3;
-  const identification::RecordFit& record = fit.records.front();
-  const std::size_t cycles = record.facts.complete_cycles;
-  if (fit.records.size() > 1 || options.preparation.cycles || options.preparation.samples ||
-      cycles < kFewestCycles) {
-    return std::nullopt;
-  }
-  const auto mean_square = [&](std::size_t begin, std::size_t end) {
-    double squares = 0.0;
-    double count = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      squares += record.counts[i] * record.residual[i] * record.residual[i];
-      count += record.counts[i];
-    }
-    return squares / std::max(count, 1.0);
-  };
-  const std::size_t second = record.reversals[1];
-  if (!(mean_square(0, second) > kWorse * mean_square(second, record.counts.size()))) return {};
-  Trial trial{.options = options, .step = {}};
-  trial.options.preparation.cycles = {2, cycles};
-  trial.step.text = "without the first cycle, whose past is not recorded";
-  trial.step.options = fmt::format("--select cycles=2:{}", cycles);
-  return trial;
-}
-
-/// Adds a term.
+/// Adds a term to the options, and what a user does for it to the step.
 /// @param name  as LikelyTerms() gives it
-Trial WithTerm(const FitOptions& options, const std::string& name, const Record& record) {
-  Trial trial{.options = options, .step = {}};
+void AddTerm(const std::string& name, const Record& record, FitOptions& options,
+             report::NextStep& step) {
   if (const auto* group = identification::FindTermGroup(name)) {
     for (const std::string_view term : group->terms) {
-      if (!options.fixed.contains(std::string(term))) trial.options.terms.emplace_back(term);
+      if (!options.fixed.contains(std::string(term))) options.terms.emplace_back(term);
     }
-    trial.step.text = group->meaning;
-    trial.step.options = name == "rig_stiffness" ? "--rig-stiffness fit" : "--terms " + name;
-    return trial;
+    step.text = group->meaning;
+    step.options = name == "rig_stiffness" ? "--rig-stiffness fit" : "--terms " + name;
+    return;
   }
   const std::string& column =
       std::ranges::find(record.covariates, name, [](const loop::Covariate& covariate) {
         return identification::NameOfCovariate(covariate.name);
       })->name;
-  trial.options.covariates = {column};
-  trial.step.text = "column " + column;
+  options.covariates = {column};
+  step.text = "column " + column;
   const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
-  trial.step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
-  return trial;
+  step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
-/// Fits the record again without its first cycle, or with the term that explains most of what the
-/// law misses, where the law alone is not adequate; with the next one where it does not gain
-/// enough, or the slip force is lost.
-/// @param is_whole  is nothing trimmed, so that cycles count from the first?
-/// @param found     written: the fit of the step
+/// Fits the record again with the term that explains most of what the law misses, where the law
+/// alone is not adequate; with the next one where it does not gain enough, or the slip force is
+/// lost.
+/// @param found  written: the fit of the step
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records, const FitResult& fit,
-                                             bool is_whole, FitResult& found) {
+                                             FitResult& found) {
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
@@ -291,35 +225,33 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
-  const auto gains = [&](Trial& trial) {
-    report::NextStep& step = trial.step;
-    step.misfit_before = *before;
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
+    FitOptions tried = options;
+    report::NextStep step;
+    AddTerm(name, records.front(), tried, step);
     // With the term another law may be the better one, and miss otherwise.
     if (request.fit.model == nullptr) {
       step.options += fmt::format(" --model {}", options.model->name);
     }
     try {
-      found = identification::Fit(records, trial.options, Depth::kIntervals);
+      found = identification::Fit(records, tried, Depth::kIntervals);
     } catch (const InvalidArgument&) {
-      return false;  // the record does not determine it
+      continue;  // the record does not determine it
     }
-    if (!found.converged || !found.adequacy.misfit_over_half_gap) return false;
-    step.misfit_after = *found.adequacy.misfit_over_half_gap;
-    for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
-    return step.misfit_after <= (1 - options.thresholds.advised_gain) * *before &&
-           !LosesSlipForce(fit, found, trial.options);
-  };
-  std::optional<Trial> later = is_whole ? WithoutFirstCycle(options, fit) : std::nullopt;
-  if (later && gains(*later)) return later->step;
-  const std::vector<loop::RecordView> views(records.begin(), records.end());
-  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
-    Trial trial = WithTerm(options, name, records.front());
-    if (!gains(trial)) continue;
+    const std::optional<double> after = found.adequacy.misfit_over_half_gap;
+    if (!found.converged || !after || LosesSlipForce(fit, found, tried) ||
+        *after > (1 - options.thresholds.advised_gain) * *before) {
+      continue;
+    }
     // A rig that cannot be told from the law is to be measured.
-    const bool is_rig = name == "rig_stiffness";
-    if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
-    if (IsRivalled(fit, found)) return std::nullopt;
-    return trial.step;
+    const bool is_confounded =
+        name == "rig_stiffness" && fit.FindFinding("shape_or_rig") != nullptr;
+    if (is_confounded || IsRivalled(fit, found)) return std::nullopt;
+    step.misfit_before = *before;
+    step.misfit_after = *after;
+    for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
+    return step;
   }
   return std::nullopt;
 }
@@ -414,14 +346,11 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::optional<report::NextStep> next;
   FitResult found;
   if (!request.chooses_terms) {
-    next = FindNextStep(request, asked.options, records, asked.fit, left_out.empty(), found);
+    next = FindNextStep(request, asked.options, records, asked.fit, found);
   }
   const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
-  const auto disproportion =
-      is_described
-          ? std::nullopt
-          : FindDisproportion(asked.options, request.contact.normal_loads, records, asked.fit);
-  if (disproportion) {
+  const auto disproportion = FindDisproportion(asked.fit);
+  if (disproportion && !is_described) {
     asked.fit.findings.push_back(*disproportion);
     asked.fit.adequacy.causes.clear();
     next.reset();

@@ -64,27 +64,6 @@ report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitReq
   return FitRecords(request, std::move(files));
 }
 
-TEST(NextStep, LeavesOutTheFirstCycleWhosePastIsNotRecorded) {
-  // It ran downwards before it was stopped in the middle, and goes on upwards.
-  io::RecordFile file;
-  const std::vector<double> sine = testing::Sine(5, 100);
-  std::vector<double> path(sine.begin(), sine.begin() + 150);
-  for (const double x : testing::Sine(4, 100)) path.push_back(x);
-  for (double& x : path) x *= 1.5e-6;
-  const std::vector<double> force =
-      testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}, path);
-  file.record.displacement.assign(path.begin() + 150, path.end());
-  file.record.force.assign(force.begin() + 150, force.end());
-  Generator generator(4);
-  for (double& f : file.record.force) f += 0.1 * testing::Normal(generator);
-  for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
-  const report::Report made = FitRecords({}, {file});
-  ASSERT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
-  ASSERT_TRUE(made.next);
-  EXPECT_THAT(made.next->options, StartsWith("--select cycles=2:"));
-  EXPECT_LT(made.next->misfit_after, 0.1 * made.next->misfit_before);
-}
-
 TEST(NextStep, IsNoneWhereACauseWithoutATermSeemsToDescribeTheRecordAsWell) {
   const auto curved = [](double x) { return x + 0.02 * x * x / 2e-6; };
   const report::Report made = FitLoops({{2e7, 1.0 / 3, 60.0}}, {}, curved);
@@ -117,19 +96,16 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
 TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   FitRequest request;
   request.contact.normal_loads = {{50, 0}, {100, 0}, {200, 0}};
-  const report::Report made =
-      FitLoops({{3e7, 1.0 / 3, 20.0}, {3.8e7, 1.0 / 3, 33.0}, {4.8e7, 1.0 / 3, 55.0}}, request);
+  // The amplitude is twice and more of their gross-slip displacements.
+  const std::vector<models::BranchLaw> laws = {
+      {3e7, 1.0 / 3, 10.0}, {3.8e7, 1.0 / 3, 16.5}, {4.8e7, 1.0 / 3, 27.5}};
+  const report::Report made = FitLoops(laws, request);
   const identification::Finding* found = made.fit.FindFinding("load_not_proportional");
   ASSERT_NE(found, nullptr);
-  EXPECT_NEAR(*found->Number("least"), 0.275, 0.003);
-  EXPECT_NEAR(*found->Number("most"), 0.4, 0.004);
+  EXPECT_NEAR(*found->Number("least"), 0.1375, 0.003);
+  EXPECT_NEAR(*found->Number("most"), 0.2, 0.004);
   EXPECT_FALSE(made.next);
   EXPECT_THAT(made.fit.adequacy.causes, IsEmpty());
-  // Given parameters of the series do not apply to its files.
-  request.fit.fixed["load_exponent"] = 1.0 / 3;
-  request.fit.bounds["slip_force"] = {30.0, 40.0};
-  EXPECT_NO_THROW(
-      FitLoops({{3e7, 1.0 / 3, 20.0}, {3.8e7, 1.0 / 3, 33.0}, {4.8e7, 1.0 / 3, 55.0}}, request));
 }
 
 TEST(FitRecords, RefusesAForceBesideATorque) {
