@@ -154,11 +154,8 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
   if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
   for (const io::PlotPanel& panel : panels) {
     figures += report::FigureHtml(
-        {.id = fmt::format("evolution-{}", ++count),
-         .title = panel.y_label,
-         .text = "Dashed lines are steps beyond chance, and where the quantity settled.",
-         .element = "h3"},
-        panel);
+        fmt::format("evolution-{}", ++count), panel.y_label,
+        "Dashed lines are steps beyond chance, and where the quantity settled.", panel);
   }
   const bool is_failed = !test.established();
   return report::PageHtml(

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <regex>
 
 #include "io/drawing.h"
 #include "mindahl/core/version.h"
@@ -11,20 +10,13 @@
 
 namespace mindahl::report {
 
+using io::HtmlText;
+
 namespace {
 
 constexpr int kWidth = 560;  // [px] of a figure
 
 }  // namespace
-
-std::string Prose(std::string_view text) {
-  static const std::regex option("(^|[^A-Za-z0-9])(--[A-Za-z0-9][A-Za-z0-9-]*)");
-  static const std::regex within_name("[_.](?=[^0-9])");
-  const std::string html =
-      std::regex_replace(io::HtmlText(text), option, "$1<span class=\"option\">$2</span>");
-  const bool is_name = text.find(' ') == std::string_view::npos;
-  return is_name ? std::regex_replace(html, within_name, "$&<wbr>") : html;
-}
 
 std::string PageHtml(std::string_view title, std::string_view body) {
   return fmt::format(R"(<!DOCTYPE html>
@@ -47,68 +39,72 @@ std::string PageHtml(std::string_view title, std::string_view body) {
 </body>
 </html>
 )",
-                     io::HtmlText(title), kStyle, Prose(title), body);
+                     HtmlText(title), kStyle, HtmlText(title), body);
 }
 
 std::string SectionHtml(std::string_view heading, const std::string& body) {
-  return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", Prose(heading), body);
+  return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", HtmlText(heading), body);
 }
 
-std::string ParagraphHtml(std::string_view text) { return fmt::format("<p>{}</p>\n", Prose(text)); }
+std::string ParagraphHtml(std::string_view text) {
+  return fmt::format("<p>{}</p>\n", HtmlText(text));
+}
 
 std::string ListHtml(const std::vector<std::string>& sentences) {
   if (sentences.empty()) return "";
   std::string html = "<ul>\n";
-  for (const std::string& each : sentences) html += fmt::format("<li>{}</li>\n", Prose(each));
+  for (const std::string& each : sentences) html += fmt::format("<li>{}</li>\n", HtmlText(each));
   return html + "</ul>\n";
 }
 
 std::string VerdictHtml(std::string_view css_class, std::string_view word,
                         std::string_view sentence) {
   return fmt::format("<p class=\"verdict {}\"><strong>{}</strong>{}{}</p>\n", css_class,
-                     Prose(word), sentence.empty() ? "" : ": ", Prose(sentence));
+                     HtmlText(word), sentence.empty() ? "" : ": ", HtmlText(sentence));
 }
 
 std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
                       const std::vector<TableLine>& lines) {
   if (lines.empty()) return "";
   std::string html = "<div class=\"table\"><table>";
-  if (!caption.empty()) html += fmt::format("<caption>{}</caption>", Prose(caption));
+  if (!caption.empty()) html += fmt::format("<caption>{}</caption>", HtmlText(caption));
   if (!names.empty()) html += "\n<thead><tr>";
   for (const std::string& name : names)
-    html += fmt::format("<th scope=\"col\">{}</th>", Prose(name));
+    html += fmt::format("<th scope=\"col\">{}</th>", HtmlText(name));
   html += names.empty() ? "\n<tbody>\n" : "</tr></thead>\n<tbody>\n";
   for (const TableLine& line : lines) {
     html += "<tr><th scope=\"row\"";
     if (!line.css_class.empty()) html += fmt::format(" class=\"{}\"", line.css_class);
     html += line.address.empty()
-                ? fmt::format(">{}</th>", Prose(line.head))
-                : fmt::format("><a href=\"{}\">{}</a></th>", line.address, Prose(line.head));
+                ? fmt::format(">{}</th>", HtmlText(line.head))
+                : fmt::format("><a href=\"{}\">{}</a></th>", line.address, HtmlText(line.head));
     for (const std::string& cell : line.cells) {
       // Letters break anywhere, numbers nowhere.
       const bool is_number = cell.find_first_of("0123456789") == 0;
-      html += fmt::format("<td class=\"{}\">{}</td>", is_number ? "number" : "words", Prose(cell));
+      html +=
+          fmt::format("<td class=\"{}\">{}</td>", is_number ? "number" : "words", HtmlText(cell));
     }
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }
 
-std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel) {
+std::string FigureHtml(std::string_view id, std::string_view title, std::string_view text,
+                       const io::PlotPanel& panel) {
   constexpr std::size_t kMostPoints = 6000;
   const io::Drawing drawing = io::DrawPanel(panel, kWidth, kMostPoints);
-  return FigureHtml(said, static_cast<int>(drawing.height), drawing.elements);
+  return FigureHtml(id, title, text, static_cast<int>(drawing.height), drawing.elements);
 }
 
-std::string FigureHtml(const FigureText& said, int height, std::string_view elements) {
+std::string FigureHtml(std::string_view id, std::string_view title, std::string_view text,
+                       int height, std::string_view elements) {
   return fmt::format(R"(<figure id="{0}">
-<{1} id="{0}-title"{2}>{3}</{1}>
-<p id="{0}-text"{2}>{4}</p>
-<svg class="plot" viewBox="0 0 {5} {6}" role="img" aria-labelledby="{0}-title {0}-text">{7}</svg>
+<h2 id="{0}-title">{1}</h2>
+<p id="{0}-text">{2}</p>
+<svg class="plot" viewBox="0 0 {3} {4}" role="img" aria-labelledby="{0}-title {0}-text">{5}</svg>
 </figure>
 )",
-                     said.id, said.element, said.attributes, Prose(said.title), Prose(said.text),
-                     kWidth, height, elements);
+                     id, HtmlText(title), HtmlText(text), kWidth, height, elements);
 }
 
 std::string SideBySide(std::string_view parts) {
@@ -118,7 +114,7 @@ std::string SideBySide(std::string_view parts) {
 std::string ProvenanceHtml(std::string_view command) {
   return SectionHtml(
       "How to reproduce this page",
-      (command.empty() ? "" : fmt::format("<pre><code>{}</code></pre>\n", Prose(command))) +
+      (command.empty() ? "" : fmt::format("<pre><code>{}</code></pre>\n", HtmlText(command))) +
           ParagraphHtml(fmt::format("mindahl {}", Version())));
 }
 

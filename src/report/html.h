@@ -12,10 +12,6 @@
 // page.cc, these are the only files that write markup.
 namespace mindahl::report {
 
-/// Returns a text as HTML in which no option of the command line is broken at its hyphens; a name,
-/// which has no blanks, is broken at its underscores and before its extension.
-std::string Prose(std::string_view text);
-
 /// Returns a page, self-contained: it may load nothing, by a policy for the browser, and has no
 /// script.
 /// @param body  the parts below, in their order
@@ -41,18 +37,13 @@ struct TableLine {
 std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
                       const std::vector<TableLine>& lines);
 
-/// Holds what is said of a figure.
-struct FigureText {
-  std::string id;  ///< names it in its page: letters, digits, '_' and '-'
-  std::string title;
-  std::string text = {};
-  std::string attributes = {};  ///< title and text have them: " class=\"hidden\""
-  std::string_view element = "h2";
-};
 /// Returns a figure of a panel, with its legend.
-std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel);
+/// @param id  names it in its page: letters, digits, '_' and '-'
+std::string FigureHtml(std::string_view id, std::string_view title, std::string_view text,
+                       const io::PlotPanel& panel);
 /// Returns a figure of the elements of an inline SVG, 560 px wide.
-std::string FigureHtml(const FigureText& said, int height, std::string_view elements);
+std::string FigureHtml(std::string_view id, std::string_view title, std::string_view text,
+                       int height, std::string_view elements);
 /// Returns figures, or tables, side by side where there is room; "" without any.
 std::string SideBySide(std::string_view parts);
 

@@ -31,15 +31,6 @@ std::string LabelOf(const Report& report, std::size_t r) {
 
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
 
-/// Returns where the last cycle of a record begins that is too long for all of its fit to be drawn:
-/// a line through some of its samples would cut corners.
-std::size_t FirstDrawn(const RecordFit& fit) {
-  constexpr std::size_t kMostSamples = 2000;
-  const auto& reversals = fit.reversals;
-  const bool is_long = fit.fitted_force.size() > kMostSamples && reversals.size() >= 4;
-  return is_long ? reversals[reversals.size() - 4] : 0;
-}
-
 }  // namespace
 
 io::Plot ToPlot(const Report& report) {
@@ -54,30 +45,21 @@ io::Plot ToPlot(const Report& report) {
     const std::string label = LabelOf(report, r);
     const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
                          const std::vector<double>& x, const std::vector<double>& y,
-                         std::optional<double> shade, std::size_t first = 0) {
-      PlotSeries series{.label = std::move(name), .style = style, .shade = shade};
-      for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
-        series.x.push_back(x[i]);
-        series.y.push_back(y[i]);
-      }
-      if (!series.x.empty()) to.push_back(std::move(series));
+                         std::optional<double> shade = {}) {
+      if (!y.empty())
+        to.push_back({.label = std::move(name), .x = x, .y = y, .style = style, .shade = shade});
     };
-    const std::optional<double> shade =
+    const double shade =
         records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
     add(measured.series, label.empty() ? "measured" : label, PlotStyle::kPoints,
         record.displacement, record.force, shade);
     const std::vector<double>& along_fit =
         fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
-    const std::size_t first = FirstDrawn(fit);
-    add(lines,
-        r > 0       ? ""
-        : first > 0 ? "fitted, last cycle"
-                    : "fitted",
-        PlotStyle::kLine, along_fit, fit.fitted_force, std::nullopt, first);
+    add(lines, r > 0 ? "" : "fitted", PlotStyle::kLine, along_fit, fit.fitted_force);
     add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, shade);
     if (report.next && r < report.next->fitted_force.size()) {
       add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r], std::nullopt, first);
+          record.displacement, report.next->fitted_force[r]);
     }
   }
   measured.series.insert(measured.series.end(), lines.begin(), lines.end());
@@ -108,24 +90,50 @@ std::string NextHtml(const Report& report, std::string_view command) {
   return SectionHtml("Next step",
                      fmt::format("{}<pre><code>{} {}</code></pre>\n",
                                  ParagraphHtml(NextStatement(report, *report.next) + ':'),
-                                 Prose(command.empty() ? "mindahl fit FILE" : command),
-                                 Prose(report.next->options)));
+                                 io::HtmlText(command.empty() ? "mindahl fit FILE" : command),
+                                 io::HtmlText(report.next->options)));
 }
 
-/// Returns friction (the slip force without a load), σ and α with their intervals as bars, α's with
-/// 1/3 marked. A bar is green only of what may be quoted. "" where none has a value.
+/// A value with its interval, which is drawn as a bar.
+struct Bar {
+  std::string_view symbol;
+  Shown shown;
+  std::string_view unit;
+  std::string_view judgement;
+  std::optional<double> mark = {};
+};
+
+/// Returns friction (the slip force without a load), σ and α; none that has no value.
+std::vector<Bar> BarsOf(const Report& report) {
+  std::vector<Bar> bars;
+  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
+    const ParameterEstimate& estimate = *report.fit.Find(name);
+    bars.push_back({symbol, WhatIsShown(estimate), estimate.unit, JudgementOf(estimate), mark});
+  };
+  add("Tc", "slip_force");
+  const ContactQuantity* friction = report.Find("friction_coefficient");
+  if (friction != nullptr && friction->value) {
+    bars[0] = {
+        "μ", {friction->value, friction->lower, friction->upper}, "-", bars[0].judgement, {}};
+  }
+  add("σ", "sigma");
+  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
+  std::erase_if(bars, [](const Bar& bar) { return !bar.shown.is_estimate(); });
+  return bars;
+}
+
+/// Returns the bars, α's with 1/3 marked. One is green only of what may be quoted. "" without any.
 std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
-  constexpr int kRow = 50;    // [px] of one bar
-  constexpr int kLeast = 64;  // [px]: one bar alone is still to be seen on a telephone
+  constexpr int kRow = 50;  // [px] of one bar
   std::string svg;
   int middle = 31;
-  const auto add = [&](std::string_view symbol, double value, std::optional<double> lower,
-                       std::optional<double> upper, std::string_view unit,
-                       std::string_view judgement, std::optional<double> mark = {}) {
-    double least = std::min(lower.value_or(value), mark.value_or(value));
-    double greatest = std::max(upper.value_or(value), mark.value_or(value));
+  for (const Bar& bar : BarsOf(report)) {
+    const double value = *bar.shown.value;
+    const auto [lower, upper] = std::pair(bar.shown.lower, bar.shown.upper);
+    double least = std::min(lower.value_or(value), bar.mark.value_or(value));
+    double greatest = std::max(upper.value_or(value), bar.mark.value_or(value));
     const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(value);
     least -= margin;
     greatest += margin;
@@ -139,38 +147,20 @@ std::string IntervalsHtml(const Report& report) {
         "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>"
         "<path class=\"interval {}\" d=\"M{:.1f} {}H{:.1f}v12H{:.1f}Z\"/>"
         "<path class=\"axis\" d=\"M{:.1f} {}v18\"/>",
-        middle + 5, symbol, kLeft, middle - 17,
-        io::HtmlText(QuantityWithInterval(value, lower, upper, unit)), kLeft, middle, kRight,
-        judgement, left, middle - 6, right, left, x(value), middle - 9);
-    if (mark) {
+        middle + 5, bar.symbol, kLeft, middle - 17,
+        io::HtmlText(QuantityWithInterval(value, lower, upper, bar.unit)), kLeft, middle, kRight,
+        bar.judgement, left, middle - 6, right, left, x(value), middle - 9);
+    if (bar.mark) {
       svg += fmt::format(
           "<path class=\"mark\" d=\"M{:.1f} {}v24\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
-          x(*mark), middle - 12, x(*mark) + 4, middle + 18);
+          x(*bar.mark), middle - 12, x(*bar.mark) + 4, middle + 18);
     }
     middle += kRow;
-  };
-  const auto add_parameter = [&](const char* symbol, const char* name,
-                                 std::optional<double> mark = {}) {
-    const ParameterEstimate& estimate = *report.fit.Find(name);
-    const Shown shown = WhatIsShown(estimate);
-    if (!shown.is_estimate()) return;
-    add(symbol, *shown.value, shown.lower, shown.upper, estimate.unit, JudgementOf(estimate), mark);
-  };
-  const ContactQuantity* friction = report.Find("friction_coefficient");
-  if (friction != nullptr && friction->value) {
-    add("μ", *friction->value, friction->lower, friction->upper, "-",
-        JudgementOf(*report.fit.Find("slip_force")));
-  } else {
-    add_parameter("Tc", "slip_force");
   }
-  add_parameter("σ", "sigma");
-  add_parameter("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
   if (svg.empty()) return "";
   return FigureHtml(
-      {.id = "intervals",
-       .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
-       .text = "Green may be quoted; amber only with its interval."},
-      std::max(middle - 31, kLeast), svg);
+      "intervals", fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
+      "Green may be quoted; amber only with its interval.", std::max(middle - 31, kLeast), svg);
 }
 
 }  // namespace
@@ -188,16 +178,10 @@ std::string ToPage(const Report& report, std::string_view command) {
       fmt::format(
           "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}{}",
           VerdictHtml(JudgementOf(word), word, MisfitStatement(report)),
-          FigureHtml({.id = "loop",
-                      .title = "Measured and fitted loop",
-                      .text = "Below it, what the fit leaves over at the same place."},
+          FigureHtml("loop", "Measured and fitted loop", "Below it, what the fit leaves over.",
                      figure.panels[0]),
-          FigureHtml({.id = "residual",
-                      .title = "Residual",
-                      .text = "Fitted less measured over the same axis. A band without shape is "
-                              "noise.",
-                      .attributes = " class=\"hidden\"",
-                      .element = "p"},
+          FigureHtml("residual", "Residual",
+                     "Fitted less measured over the same axis. A band without shape is noise.",
                      figure.panels[1]),
           IntervalsHtml(report), NextHtml(report, command),
           SectionHtml("Answer", LinesHtml("", AnswerLines(report)) +

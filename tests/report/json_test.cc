@@ -136,7 +136,7 @@ TEST(Page, HasTheCommandOfTheNextStep) {
   ReportInput input = MadeInput();
   input.next = testing::MadeStep("--terms lag");
   EXPECT_THAT(Page(std::move(input), "mindahl fit a.csv"),
-              HasSubstr("mindahl fit a.csv <span class=\"option\">--terms</span> lag"));
+              HasSubstr("mindahl fit a.csv --terms lag"));
 }
 
 TEST(ToPlot, PutsTheResidualOverTheSameAxis) {

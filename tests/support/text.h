@@ -6,12 +6,6 @@
 
 namespace mindahl::testing {
 
-/// A page without what says where its lines may break, for text to be looked for as it reads.
-inline std::string Unbroken(std::string page) {
-  static const std::regex kBreaks("<span class=\"option\">(.*?)</span>|<wbr>");
-  return std::regex_replace(page, kBreaks, "$1");
-}
-
 /// Returns the matches of a pattern's first group.
 inline std::set<std::string> Matches(const std::string& text, const std::string& pattern) {
   std::set<std::string> found;
