@@ -158,15 +158,11 @@ class Writer {
     Add("columns", fmt::format("{}: {}", name, fmt::join(columns, ", ")));
   }
 
-  /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
-  /// their units stand in the line above.
+  /// Says what was assumed of the files: one thing in full, of more how many.
   void AddReading() {
     const std::vector<std::string>& notes = report_.notes;
     if (notes.size() <= 1) return Add("read as", notes);
-    const bool has_units = std::ranges::any_of(
-        notes, [](const std::string& note) { return note.find("no unit") != std::string::npos; });
-    Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
-                               has_units ? ", units among them" : ""));
+    Add("read as", fmt::format("{} assumptions: --details", notes.size()));
   }
 
   void AddFriction() {
@@ -224,15 +220,16 @@ class Writer {
       return model.name == "dahl" ? "Dahl's own" : "Masing's";
     };
     const std::string laws = fmt::format("{}; {}", name(*fit_.model), name(*choice->alternative));
-    std::vector<std::string> other;
+    std::string values;
     const auto add = [&](const char* symbol, const char* parameter, double value) {
       const ParameterEstimate& estimate = *fit_.Find(parameter);
       if (!WhatIsShown(estimate).is_estimate()) return;
-      other.push_back(fmt::format("{} {}", symbol, Quantity(value, estimate.unit, 3)));
+      values += fmt::format("{}{} {}", values.empty() ? " (" : ", ", symbol,
+                            Quantity(value, estimate.unit, 3));
     };
     add("σ", "sigma", choice->law.tangential_stiffness);
     add("Tc", "slip_force", choice->law.slip_force);
-    const std::string values = other.empty() ? "" : fmt::format(" ({})", fmt::join(other, ", "));
+    if (!values.empty()) values += ')';
     if (!choice->decided) {
       Add("law", fmt::format("{} fits as well{}", laws, values));
     } else if (choice->preferred == choice->alternative) {
@@ -272,11 +269,10 @@ class Writer {
 
   void AddLeftOut() {
     std::vector<std::string> parts;
-    const std::vector<LeftOut> all = DescribeLeftOut(report_);
     constexpr std::size_t kMost = 3;
-    for (const LeftOut& part : all) {
+    for (const LeftOut& part : report_.left_out) {
       if (parts.size() == kMost) {
-        parts.push_back(fmt::format("{} more parts", all.size() - kMost));
+        parts.push_back(fmt::format("{} more parts", report_.left_out.size() - kMost));
         break;
       }
       parts.push_back(part.first == 0 ? fmt::format("{} samples ({})", part.samples, part.why)
@@ -394,33 +390,12 @@ namespace {
 constexpr std::size_t kTextWidth = 100;
 constexpr std::size_t kLabel = 14;  // where texts begin
 
-/// True for a number, or what stands before one: what comes after it belongs to it.
-bool IsNumber(std::string_view word) {
-  if (word == "±" || word == "…" || word == ">" || word == "<" || word == "=") return true;
-  if (word.starts_with('(')) word.remove_prefix(1);
-  return !word.empty() && word.find_first_not_of("0123456789.+-e") == std::string_view::npos &&
-         word.find_first_of("0123456789") != std::string_view::npos;
-}
-
-/// Breaks a text between words; a number stays with what belongs to it.
-std::string Wrapped(std::string_view text) {
-  std::vector<std::string> words;
-  std::string_view last;
-  for (const std::string_view word : PartsOf(text, ' ')) {
-    const bool belongs_to_it = IsNumber(last) || word.starts_with("…") || word.starts_with("(");
-    if (words.empty() || !belongs_to_it) words.emplace_back();
-    words.back().append(words.back().empty() ? "" : " ").append(word);
-    last = word;
-  }
-  const std::vector<std::string_view> views(words.begin(), words.end());
-  return fmt::format(
-      "{}", fmt::join(LinesOf(views, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
-}
-
 std::string LinesText(const std::vector<Line>& lines) {
   std::string text;
+  const std::string indent = '\n' + std::string(kLabel, ' ');
   for (const Line& line : lines) {
-    text += fmt::format("{:<{}} {}\n", line.label, kLabel - 1, Wrapped(line.text));
+    text += fmt::format("{:<{}}{}\n", line.label, kLabel,
+                        fmt::join(LinesOf(PartsOf(line.text, ' '), kTextWidth - kLabel), indent));
   }
   return text;
 }

@@ -22,9 +22,18 @@ Json ColumnJson(const io::ChosenColumn& column) {
   return {{"name", column.name}, {"index", column.index}, {"unit", column.unit}};
 }
 
+/// Returns the members, those of a part that there is not as null and its lists empty.
+Json If(bool there_is, Json members) {
+  if (there_is) return members;
+  for (Json& member : members) {
+    member = member.is_object() ? If(false, member) : member.is_array() ? Json::array() : Json();
+  }
+  return members;
+}
+
 Json LeftOutJson(const Report& report) {
   const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
-  return ListOf(DescribeLeftOut(report), [&](const LeftOut& part) -> Json {
+  return ListOf(report.left_out, [&](const LeftOut& part) -> Json {
     return {{"file", part.file},
             {"samples", part.samples},
             {"first", line(part.first)},
@@ -33,25 +42,14 @@ Json LeftOutJson(const Report& report) {
   });
 }
 
-/// True where a value is only where the search ended: at a limit of the program's own.
-bool IsAtOwnLimit(const ParameterEstimate& estimate) {
-  return (estimate.status == ParameterStatus::kAtLowerBound ||
-          estimate.status == ParameterStatus::kAtUpperBound) &&
-         estimate.identifiability == Identifiability::kNotIdentifiable;
-}
-
 Json Parameters(const Report& report) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : report.fit.parameters) {
-    const bool is_at_limit = IsAtOwnLimit(estimate);
-    const auto unless_at_limit = [&](std::optional<double> value) {
-      return is_at_limit ? Json() : NumberOrNull(value);
-    };
     parameters[estimate.name] = {
-        {"value", unless_at_limit(estimate.value)},
+        {"value", NumberOrNull(estimate.value)},
         {"unit", estimate.unit},
-        {"ci95", {unless_at_limit(estimate.lower95), unless_at_limit(estimate.upper95)}},
-        {"standard_error", unless_at_limit(estimate.standard_error)},
+        {"ci95", {NumberOrNull(estimate.lower95), NumberOrNull(estimate.upper95)}},
+        {"standard_error", NumberOrNull(estimate.standard_error)},
         {"status", Name(estimate.status)},
         {"identifiability", Name(estimate.identifiability)}};
   }
@@ -74,51 +72,46 @@ Json Correlations(const Report& report) {
 }
 
 Json MeasuredJson(const Report& report) {
-  static const RecordFit none;
-  const RecordFit& widest = report.failed() ? none : report.fit.WidestRecord();
+  const RecordFit& widest = report.fit.WidestRecord();
   const loop::LoopFacts& facts = widest.facts;
   const auto if_closed = [&](std::optional<double> value) {
     return facts.closed ? NumberOrNull(value) : Json();
   };
-  const auto if_fitted = [&](double value) {
-    return report.failed() ? Json() : NumberOrNull(value);
-  };
-  return {{"half_gap",
-           {{"value", if_closed(facts.half_gap)},
-            {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
-          {"amplitude", if_fitted(facts.amplitude)},
-          {"peak_force", if_fitted(facts.peak_force)},
-          {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
-          {"energy_ratio", if_closed(facts.energy_ratio)},
-          {"asymmetry", if_closed(facts.asymmetry)},
-          {"slides", report.failed() ? Json() : Json(loop::Slides(facts))},
-          {"cycles", ListOf(facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
-             return {{"start", cycle.start},
-                     {"amplitude", NumberOrNull(cycle.amplitude)},
-                     {"peak_force", NumberOrNull(cycle.peak_force)},
-                     {"half_gap", NumberOrNull(cycle.half_gap)},
-                     {"energy", NumberOrNull(cycle.energy)},
-                     {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
-           })}};
+  return If(
+      !report.failed(),
+      {{"half_gap",
+        {{"value", if_closed(facts.half_gap)},
+         {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
+       {"amplitude", NumberOrNull(facts.amplitude)},
+       {"peak_force", NumberOrNull(facts.peak_force)},
+       {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
+       {"energy_ratio", if_closed(facts.energy_ratio)},
+       {"asymmetry", if_closed(facts.asymmetry)},
+       {"slides", loop::Slides(facts)},
+       {"cycles", ListOf(facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
+          return {{"start", cycle.start},
+                  {"amplitude", NumberOrNull(cycle.amplitude)},
+                  {"peak_force", NumberOrNull(cycle.peak_force)},
+                  {"half_gap", NumberOrNull(cycle.half_gap)},
+                  {"energy", NumberOrNull(cycle.energy)},
+                  {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
+        })}});
 }
 
 Json AdequacyJson(const Report& report) {
   const identification::Adequacy& adequacy = report.fit.adequacy;
-  const bool is_judged = IsJudged(report);
-  const auto number = [&](std::optional<double> value) {
-    return is_judged ? NumberOrNull(value) : Json();
-  };
-  return {{"verdict", is_judged ? Json(Name(adequacy.verdict)) : Json()},
-          {"use", is_judged ? Json(Name(adequacy.use)) : Json()},
-          {"p_value", number(adequacy.p_value)},
-          {"misfit_over_noise", number(adequacy.misfit_over_noise)},
-          {"misfit_over_half_gap", number(adequacy.misfit_over_half_gap)},
-          {"causes", ListOf(adequacy.causes, [](const identification::Cause& cause) -> Json {
-             return {{"code", cause.code},
-                     {"term", cause.term.empty() ? Json() : Json(cause.term)},
-                     {"delta_aicc", NumberOrNull(cause.delta_aicc)},
-                     {"explains", NumberOrNull(cause.explains)}};
-           })}};
+  return If(IsJudged(report),
+            {{"verdict", Name(adequacy.verdict)},
+             {"use", Name(adequacy.use)},
+             {"p_value", NumberOrNull(adequacy.p_value)},
+             {"misfit_over_noise", NumberOrNull(adequacy.misfit_over_noise)},
+             {"misfit_over_half_gap", NumberOrNull(adequacy.misfit_over_half_gap)},
+             {"causes", ListOf(adequacy.causes, [](const identification::Cause& cause) -> Json {
+                return {{"code", cause.code},
+                        {"term", cause.term.empty() ? Json() : Json(cause.term)},
+                        {"delta_aicc", NumberOrNull(cause.delta_aicc)},
+                        {"explains", NumberOrNull(cause.explains)}};
+              })}});
 }
 
 Json LawChoiceJson(const std::optional<identification::LawChoice>& choice) {
@@ -170,22 +163,14 @@ Reasons ReasonsOf(const Report& report) {
       {"input.columns", "the file has none, or it is not used"},
       {"input.left_out", "they are not in a row"},
       {"correlation", "one of the two is not fitted, or has no error"},
-      {"adequacy", "there are too few samples to identify anything in addition to the model"},
-      {"adequacy.misfit_over_half_gap", "it is not judged, or no half gap is measured"},
+      {"parameters", "it is held, or the record does not determine it"},
+      {"adequacy", "it is not judged, or no half gap is measured"},
       {"adequacy.causes", "no term takes it into account"},
-      {"measured", "no cycle shows it"},
-      {"measured.half_gap.standard_deviation", "of fewer than two cycles there is none"},
+      {"measured", "no cycle shows it, or fewer than two"},
       {"law", "the record does not distinguish the laws, or they are not compared"},
       {"mapping", "alpha is held, at a bound or not identifiable, or it is a torque"},
-      {"mapping.sigma_over_hertz_mindlin", "as of the contact, which a torque has not"},
       {"compared", "there are no cycles to hold out, or a fit without them failed"},
       {"next", "nothing that was tried helps by a tenth"}};
-  for (const ParameterEstimate& estimate : report.fit.parameters) {
-    reasons["parameters." + estimate.name] =
-        IsAtOwnLimit(estimate)                       ? "the search stopped at its own limit"
-        : estimate.status == ParameterStatus::kFixed ? "it is held"
-                                                     : "the record does not determine it";
-  }
   for (const ContactQuantity& quantity : report.contact) {
     reasons[fmt::format("contact.{}", quantity.name)] = quantity.why;
   }
@@ -225,13 +210,7 @@ std::string Document(std::string_view schema, const Json& members) {
 Json DocumentOf(const Report& report) {
   const FitResult& fit = report.fit;
   const identification::ResidualStatistics& residuals = fit.residuals;
-  const auto if_fitted = [&](double value) {
-    return report.failed() ? Json() : NumberOrNull(value);
-  };
   const io::RecordFile& first = report.records.front();
-  std::size_t samples = 0;
-  for (const io::RecordFile& file : report.records) samples += file.record.size();
-  for (const LeftOut& part : report.left_out) samples += part.samples;
   std::size_t cycles = 0;
   std::size_t reversals = 0;
   for (const RecordFit& record : fit.records) {
@@ -255,7 +234,7 @@ Json DocumentOf(const Report& report) {
           {"force", ColumnJson(first.force)},
           {"time", ColumnJson(first.time)},
           {"normal_load", ColumnJson(first.normal_load)}}},
-        {"samples", samples},
+        {"samples", report.samples},
         {"cycles", cycles},
         {"reversals", reversals},
         {"left_out", LeftOutJson(report)}}},
@@ -264,11 +243,11 @@ Json DocumentOf(const Report& report) {
       {"parameters", Parameters(report)},
       {"correlation", Correlations(report)},
       {"residuals",
-       {{"rms", if_fitted(residuals.rms)},
-        {"max_abs", if_fitted(residuals.max_abs)},
-        {"r_squared", if_fitted(residuals.r_squared)},
-        {"durbin_watson", if_fitted(residuals.durbin_watson)},
-        {"effective_samples", if_fitted(residuals.effective_samples)}}},
+       If(!report.failed(), {{"rms", NumberOrNull(residuals.rms)},
+                             {"max_abs", NumberOrNull(residuals.max_abs)},
+                             {"r_squared", NumberOrNull(residuals.r_squared)},
+                             {"durbin_watson", NumberOrNull(residuals.durbin_watson)},
+                             {"effective_samples", NumberOrNull(residuals.effective_samples)}})},
       {"solver",
        {{"solver", fit.solver.solver},
         {"termination", fit.solver.termination},
@@ -311,20 +290,6 @@ Json ComparedModels(const Report& report) {
   });
 }
 
-std::vector<LeftOut> DescribeLeftOut(const Report& report) {
-  std::vector<LeftOut> parts = report.left_out;
-  for (std::size_t r = 0; r < report.records.size(); ++r) {
-    const RecordFit& fit = report.fit.records[r];
-    const std::size_t faults = fit.glitches.total;
-    const std::size_t selected = fit.left_out - std::min(fit.left_out, faults);
-    const io::RecordFile& file = report.records[r];
-    const std::size_t line = faults == 1 ? file.LineOf(fit.glitches.first) : 0;
-    if (faults > 0) parts.push_back({file.name, faults, line, line, "faults"});
-    if (selected > 0) parts.push_back({file.name, selected, 0, 0, "selection"});
-  }
-  return parts;
-}
-
 std::vector<const ParameterEstimate*> AddedTerms(const Report& report) {
   std::vector<const ParameterEstimate*> terms;
   for (const ParameterEstimate& estimate : report.fit.parameters) {
@@ -332,9 +297,7 @@ std::vector<const ParameterEstimate*> AddedTerms(const Report& report) {
     constexpr auto kOfEveryFit = std::to_array<std::string_view>(
         {"sigma", "alpha", "slip_force", "load_exponent", "force_offset", "displacement_offset"});
     if (std::ranges::find(kOfEveryFit, name) != kOfEveryFit.end()) continue;
-    // Reported of every fit, as 0 where it is not fitted.
     const bool is_none = estimate.status == ParameterStatus::kFixed &&
-                         (estimate.value == 0.0 || std::isinf(estimate.value)) &&
                          !report.options.fixed.contains(std::string(name));
     if (!is_none) terms.push_back(&estimate);
   }

@@ -74,9 +74,6 @@ Json DocumentOf(const Report& report);
 /// Returns a row for each model that was compared and converged, the best first.
 Json ComparedModels(const Report& report);
 
-/// Returns the samples of each record that do not count.
-std::vector<LeftOut> DescribeLeftOut(const Report& report);
-
 /// Returns the parameters in addition to the law's, offsets apart, that are fitted or held.
 std::vector<const identification::ParameterEstimate*> AddedTerms(const Report& report);
 

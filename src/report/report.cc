@@ -41,19 +41,18 @@ void TranslateToTorque(Report& report) {
   }
 }
 
-/// Withdraws what a curve says that goes through all samples, as there are no more of them than
-/// free parameters.
-void RequireMoreSamplesThanParameters(FitResult& fit) {
-  const auto free = static_cast<std::size_t>(
-      std::ranges::count(fit.parameters, ParameterStatus::kFree, &ParameterEstimate::status));
-  if (fit.residuals.samples == 0 || fit.residuals.samples > free) return;
-  fit.adequacy = {};
-  for (ParameterEstimate& estimate : fit.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) continue;
-    estimate.identifiability = Identifiability::kNotIdentifiable;
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
+/// Counts the samples, and adds those of the records that do not count to what is left out.
+void CountSamples(Report& report) {
+  for (const LeftOut& part : report.left_out) report.samples += part.samples;
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const RecordFit& fit = report.fit.records[r];
+    const io::RecordFile& file = report.records[r];
+    report.samples += file.record.size();
+    const std::size_t faults = fit.glitches.total;
+    const std::size_t selected = fit.left_out - std::min(fit.left_out, faults);
+    const std::size_t line = faults == 1 ? file.LineOf(fit.glitches.first) : 0;
+    if (faults > 0) report.left_out.push_back({file.name, faults, line, line, "faults"});
+    if (selected > 0) report.left_out.push_back({file.name, selected, 0, 0, "selection"});
   }
 }
 
@@ -177,13 +176,13 @@ Report MakeReport(ReportInput input) {
   Require(input);
   Report report;
   static_cast<ReportInput&>(report) = std::move(input);
+  CountSamples(report);
   if (report.is_torsional()) TranslateToTorque(report);
   if (report.fit.response == loop::Channel::kDisplacement) {
     report.units.response = report.units.displacement;
     report.units.excitation = report.units.force;
   }
   if (!report.failed()) {
-    RequireMoreSamplesThanParameters(report.fit);
     if (!report.is_torsional()) {
       report.alpha = TestAlpha(report.fit);
       report.contact = DescribeContact(report.fit, report.known);

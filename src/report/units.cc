@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <regex>
+#include <utility>
 
 namespace mindahl::report {
 
@@ -83,12 +85,8 @@ std::string RoundedTo(double error, double value) {
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(error / kRoundsUp)));
   const double scale = std::pow(10.0, std::min(decimals, 0));
   const double rounded = decimals < 0 ? std::round(value * scale) / scale : value;
-  // Beyond these, zeros are counted.
-  constexpr double kMostWritten = 1e6;
-  constexpr int kMostDecimals = 9;
-  if ((std::abs(rounded) >= kMostWritten && decimals <= 0) || decimals > kMostDecimals) {
-    return fmt::format("{:.5g}", value);
-  }
+  constexpr int kMostDecimals = 9;  // beyond, zeros are counted
+  if (std::abs(decimals) > kMostDecimals) return fmt::format("{:.5g}", value);
   std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
   if (text.find_first_not_of("-0.") == std::string::npos) text.erase(0, text.find('0'));
   return text;
@@ -129,20 +127,11 @@ std::string QuantityWithInterval(std::optional<double> value, std::optional<doub
 }
 
 std::string UnitIn(const Units& units, std::string_view unit) {
-  if (units.force == kUnitsOfForce.force) return std::string(unit);
-  std::string translated;
-  for (std::size_t begin = 0; begin < unit.size();) {
-    const std::size_t end = std::min(unit.find_first_of(" /()²", begin), unit.size());
-    const std::string_view symbol = unit.substr(begin, end - begin);
-    translated += symbol == "m" ? "rad" : symbol == "N" ? "N m" : symbol == "kg" ? "kg m²" : symbol;
-    if (end < unit.size()) translated += unit[end];
-    begin = end + 1;
-  }
-  // A product below the stroke needs brackets.
-  const std::size_t below = std::min(translated.find('/'), translated.size());
-  if (translated.find(' ', below) != std::string::npos &&
-      translated.find('(') == std::string::npos) {
-    translated.insert(below + 1, "(").append(")");
+  std::string translated(unit);
+  if (units.force == kUnitsOfForce.force) return translated;
+  for (const auto& [word, of_torque] :
+       {std::pair("\\bm\\b", "rad"), {"\\bN\\b", "N m"}, {"\\bkg\\b", "kg m²"}}) {
+    translated = std::regex_replace(translated, std::regex(word), of_torque);
   }
   return translated;
 }

@@ -30,7 +30,7 @@ TEST(FitJson, NamesTheInputsThatANullMisses) {
   const json fit = JsonOf("fit " + SampleRecord() + " --model mindlin");
   EXPECT_EQ(WhyNull(fit, "contact.friction_coefficient.value"), "needs the normal load");
   EXPECT_EQ(WhyNull(fit, "contact.compliance.value"), "needs the contact radius");
-  EXPECT_EQ(WhyNull(fit, "parameters.alpha.ci95[1]"), "it is held");
+  EXPECT_THAT(WhyNull(fit, "parameters.alpha.ci95[1]"), StartsWith("it is held"));
   EXPECT_THAT(WhyNull(fit, "mapping.p_value"), StartsWith("alpha is held"));
 }
 

@@ -45,8 +45,9 @@ struct ReportInput {
   std::vector<io::RecordFile> records{};  ///< records that were fitted, as read
   identification::FitResult fit{};
   identification::FitOptions options = {};  ///< options of the fit, with what it chose
-  contact::KnownContact known = {};     ///< known properties of the contact, in addition to the fit
-  std::vector<LeftOut> left_out = {};   ///< what was cut off the records as not of their tests
+  contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
+  /// What was cut off the records as not of their tests; in a Report also what else does not count.
+  std::vector<LeftOut> left_out = {};
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared
   std::optional<identification::TermSelection> terms = {};  ///< if terms were chosen
@@ -60,6 +61,7 @@ struct ReportInput {
 /// ToText(), ToPage() and ToPlot() write it.
 struct Report : ReportInput {
   Units units;                           ///< units of all numbers in words
+  std::size_t samples = 0;               ///< of all records, with those that are left out
   std::vector<ContactQuantity> contact;  ///< empty where the fit failed, and of a torque
   AlphaTest alpha;
   std::vector<Warning> warnings;  ///< on which a person should act
@@ -78,8 +80,7 @@ struct Report : ReportInput {
   [[nodiscard]] std::optional<double> ValueOf(std::string_view quantity) const;
 };
 
-/// Makes a report from a fit. A fit of no more samples than free parameters determines none of
-/// them.
+/// Makes a report from a fit.
 /// @param input  one record for each record of the fit
 /// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,
 ///   and as DescribeContact()

@@ -71,7 +71,7 @@ void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
 void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
   const std::size_t free = problem.parameters.free().size();
   const std::size_t counted = problem.data->counted;
-  if (counted >= free) return;
+  if (counted > free) return;
   const std::size_t left_out = prepared.samples() - counted;
   const std::string without = left_out == 0 ? ""
                                             : fmt::format("; of {} that were read {} are left out",
