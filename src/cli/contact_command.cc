@@ -40,7 +40,7 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   Add(parameters, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
       "1/3, Mindlin");
   Add(parameters, "slip_force", made.slip_force, "N", "Tc = mu N");
-  Say("contact: warning", DoubtsAbout(given), console);
+  Say("contact: warning", contact::DoubtsAbout(given.known, given.friction_coefficient), console);
   Json rows = quantities;
   rows.update(parameters);
   constexpr int kEveryDigit = 17;

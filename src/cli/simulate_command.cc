@@ -83,7 +83,9 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   boost::random::mt19937_64 engine(options.seed);
   AddNoise(force, options.force_noise, engine);
   AddNoise(motion.displacement, options.displacement_noise, engine);
-  Say("simulate: warning", DoubtsAbout(options.law.contact), console);
+  Say("simulate: warning",
+      contact::DoubtsAbout(options.law.contact.known, options.law.contact.friction_coefficient),
+      console);
   WriteText(io::CsvText({{"time [s]", motion.time},
                          {"displacement [m]", motion.displacement},
                          {"force [N]", force}}),

@@ -75,8 +75,7 @@ class Writer {
     AddMeasured();
     AddLeftOut();
     if (report_.next) {
-      Add("next",
-          fmt::format("{}: {}", report_.next->options, NextStatement(report_, *report_.next)));
+      Add("next", fmt::format("{}: {}", report_.next->options, NextStatement(*report_.next)));
     } else {
       AddCause();
     }
@@ -178,15 +177,20 @@ class Writer {
     AddParameter("friction", "Tc", slip_force, remark);
   }
 
+  /// Says whether an exponent is a theory's; a rig that is not told from the contact changes it.
+  std::string ThirdText(std::string_view whose, bool is_rejected) const {
+    const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
+    return fmt::format("{} 1/3 {}{}", whose, is_rejected ? "is rejected" : "fits",
+                       !by_rig       ? ""
+                       : is_rejected ? " in a rigid rig"
+                                     : " in a compliant rig");
+  }
+
   void AddShape() {
     std::string remark;
     const AlphaTest& test = report_.alpha;
     if (test.is_rejected) {
-      const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
-      remark = fmt::format("Mindlin's 1/3 {}{}", *test.is_rejected ? "is rejected" : "fits",
-                           !by_rig             ? ""
-                           : *test.is_rejected ? " in a rigid rig"
-                                               : " in a compliant rig");
+      remark = ThirdText("Mindlin's", *test.is_rejected);
     } else if (test.minus_third && !IsInadequate(report_)) {
       remark = "Mindlin's 1/3 is not tested";
     }
@@ -196,13 +200,11 @@ class Writer {
   void AddLoad() {
     const ParameterEstimate* exponent = fit_.Find("load_exponent");
     if (exponent == nullptr) return;
-    const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
-    const char* const hertz = report_.is_torsional() || !exponent->is_known() ? ""
-                              : DeniesHertz(fit_) ? "Hertz's 1/3 is rejected, "
-                              : by_rig            ? "Hertz's 1/3 fits in a compliant rig, "
-                                                  : "Hertz's 1/3 fits, ";
-    AddParameter("load", "σ ∝ N^p, p", *exponent,
-                 fmt::format("{}σ and Tc are at the mean of {} loads", hertz, fit_.records.size()));
+    std::string remark = fmt::format("σ and Tc are at the mean of {} loads", fit_.records.size());
+    if (!report_.is_torsional() && exponent->is_known()) {
+      remark = ThirdText("Hertz's", DeniesHertz(fit_)) + ", " + remark;
+    }
+    AddParameter("load", "σ ∝ N^p, p", *exponent, remark);
   }
 
   void AddTerms() {
@@ -275,9 +277,8 @@ class Writer {
         parts.push_back(fmt::format("{} more parts", report_.left_out.size() - kMost));
         break;
       }
-      parts.push_back(part.first == 0 ? fmt::format("{} samples ({})", part.samples, part.why)
-                      : part.first == part.last
-                          ? fmt::format("line {} ({})", part.first, part.why)
+      parts.push_back(part.first == 0
+                          ? fmt::format("{} samples ({})", part.samples, part.why)
                           : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
     }
     Add("left out", parts);
@@ -329,7 +330,7 @@ std::string MisfitStatement(const Report& report) {
   }
   std::string text = Quantity(adequacy.misfit, unit, 3);
   if (adequacy.misfit_over_half_gap) {
-    text += ", " + MisfitShare(report, *adequacy.misfit_over_half_gap);
+    text += ", " + MisfitShare(*adequacy.misfit_over_half_gap);
   }
   constexpr double kMostOfIt = 0.5;  // is the same at one place of every stroke
   if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";

@@ -177,25 +177,18 @@ Reasons ReasonsOf(const Report& report) {
   return reasons;
 }
 
-/// Returns the reason of the longest path that leads to a place.
-const std::string& WhyNull(const Reasons& reasons, std::string path) {
-  while (!reasons.contains(path)) {
-    const std::size_t last = path.find_last_of(".[");
-    path.resize(last == std::string::npos ? 0 : last);
-  }
-  return reasons.at(path);
-}
-
-/// Adds a place for every null of a value, each with its reason.
-void FindNulls(const Json& value, const std::string& path, const Reasons& reasons, Json& nulls) {
-  if (value.is_null()) nulls.push_back({{"path", path}, {"why", WhyNull(reasons, path)}});
+/// Adds a place for every null of a value, with the reason of the longest path that leads there.
+void FindNulls(const Json& value, const std::string& path, std::string why, const Reasons& reasons,
+               Json& nulls) {
+  if (const auto own = reasons.find(path); own != reasons.end()) why = own->second;
+  if (value.is_null()) nulls.push_back({{"path", path}, {"why", why}});
   if (!value.is_structured()) return;
   for (const auto& [key, member] : value.items()) {
     FindNulls(member,
               value.is_array() ? fmt::format("{}[{}]", path, key)
               : path.empty()   ? key
                                : fmt::format("{}.{}", path, key),
-              reasons, nulls);
+              why, reasons, nulls);
   }
 }
 
@@ -270,7 +263,7 @@ Json DocumentOf(const Report& report) {
          return {{"code", warning.code}, {"message", warning.message}};
        })}};
   Json nulls = Json::array();
-  FindNulls(document, "", ReasonsOf(report), nulls);
+  FindNulls(document, "", "", ReasonsOf(report), nulls);
   document["nulls"] = std::move(nulls);
   return document;
 }

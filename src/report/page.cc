@@ -89,7 +89,7 @@ std::string NextHtml(const Report& report, std::string_view command) {
   if (!report.next) return "";
   return SectionHtml("Next step",
                      fmt::format("{}<pre><code>{} {}</code></pre>\n",
-                                 ParagraphHtml(NextStatement(report, *report.next) + ':'),
+                                 ParagraphHtml(NextStatement(*report.next) + ':'),
                                  io::HtmlText(command.empty() ? "mindahl fit FILE" : command),
                                  io::HtmlText(report.next->options)));
 }

@@ -67,28 +67,14 @@ std::string PercentText(double share) {
   return fmt::format("{} %", Quantity(100 * share, "-", 2));
 }
 
-namespace {
-
-/// Returns what a misfit was judged over, in half gaps: 1, or the peak force.
-double ScaleOf(const Report& report) {
-  const std::optional<double> half_gap = report.fit.MeasuredHalfGap();
-  return half_gap ? report.fit.MisfitScale() / *half_gap : 1.0;
+std::string MisfitShare(double over_half_gap) {
+  return fmt::format("{} the half gap",
+                     over_half_gap >= 1 ? "more than" : PercentText(over_half_gap) + " of");
 }
 
-}  // namespace
-
-std::string MisfitShare(const Report& report, double over_half_gap) {
-  const double scale = ScaleOf(report);
-  const double share = over_half_gap / scale;
-  return fmt::format("{} the {}", share >= 1 ? "more than" : PercentText(share) + " of",
-                     scale == 1 ? "half gap" : "peak force");
-}
-
-std::string NextStatement(const Report& report, const NextStep& next) {
-  const double scale = ScaleOf(report);
+std::string NextStatement(const NextStep& next) {
   return fmt::format("{}{}misfit {} → {} (tried)", next.text, next.text.empty() ? "" : ", ",
-                     PercentText(next.misfit_before / scale),
-                     MisfitShare(report, next.misfit_after));
+                     PercentText(next.misfit_before), MisfitShare(next.misfit_after));
 }
 
 void RequireFitted(const Report& report, std::string_view what) {

@@ -81,14 +81,12 @@ std::string ParameterText(std::string_view symbol, const ParameterEstimate& esti
 /// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
 std::string PercentText(double share);
 
-/// Says a misfit over the half gap, of a loop that is narrower than half its peak force over that,
-/// as it was judged.
 /// @param over_half_gap  as Adequacy::misfit_over_half_gap
 /// @returns "5.6 % of the half gap", "more than the half gap"
-std::string MisfitShare(const Report& report, double over_half_gap);
+std::string MisfitShare(double over_half_gap);
 
 /// Says what the next step would do: "a lag, misfit 5.6 % → 2.1 % of the half gap (tried)".
-std::string NextStatement(const Report& report, const NextStep& next);
+std::string NextStatement(const NextStep& next);
 
 /// Describes a finding in at most some twenty words, without an end of line, naming no parameter:
 /// what was found and, where something can be done, what to do; the code alone where it is unknown.

@@ -107,10 +107,4 @@ BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
   return law;
 }
 
-std::vector<std::string> DoubtsAbout(const ContactOptions& options) {
-  std::optional<double> friction;
-  if (options.friction_coefficient) friction = options.friction_coefficient->value;
-  return contact::DoubtsAbout(options.known, friction);
-}
-
 }  // namespace mindahl::request

@@ -276,14 +276,10 @@ TEST(Answer, HasTheNextStepThatWasTried) {
   EXPECT_EQ(LineOf(Doubtful(), "next"), "");
 }
 
-TEST(Answer, StatesAMisfitAsAShareOfTheHalfGapOrOfThePeakForce) {
+TEST(Answer, StatesAMisfitAsAFractionOfTheHalfGap) {
   ReportInput input = Doubtful();
   input.fit.records[0].facts = Facts(10.0);
   EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("5 % of the half gap"));
-  input.fit.records[0].facts.half_gap = 2.0;  // a fifth of T*: it was judged over that
-  input.fit.records[0].facts.energy_ratio = 0.1;
-  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("1 % of the peak force"));
-  input = Doubtful();
   input.fit.adequacy.misfit_over_half_gap = 3.4e-8;
   EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("< 0.01 % of the half gap"));
   input.fit.records[0].structure.repeatable_share = 0.3;

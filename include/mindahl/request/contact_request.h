@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -56,8 +55,5 @@ bool IsAnythingGiven(const LawRequest& request);
 ///   InvalidArgument out of range
 models::BranchLaw ResolveLaw(const LawRequest& request, std::string_view model = {},
                              std::optional<double> prescribed_exponent = std::nullopt);
-
-/// Returns the doubts about a contact that is hardly meant, one sentence each.
-std::vector<std::string> DoubtsAbout(const ContactOptions& options);
 
 }  // namespace mindahl::request
