@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -395,9 +396,12 @@ std::string LinesText(const std::vector<Line>& lines) {
   std::string text;
   const std::string indent = '\n' + std::string(kLabel, ' ');
   for (const Line& line : lines) {
+    // An interval is not broken.
+    const std::string whole = boost::replace_all_copy(line.text, " … ", "\t…\t");
     text += fmt::format("{:<{}}{}\n", line.label, kLabel,
-                        fmt::join(LinesOf(PartsOf(line.text, ' '), kTextWidth - kLabel), indent));
+                        fmt::join(LinesOf(PartsOf(whole, ' '), kTextWidth - kLabel), indent));
   }
+  std::ranges::replace(text, '\t', ' ');
   return text;
 }
 

@@ -38,16 +38,6 @@ std::vector<Cells> RowsOf(const Json& rows) {
   return all;
 }
 
-/// Breaks the name of a column between its words into lines no wider than its cells or a word.
-/// @param width  of the cells; written: of the column
-std::vector<std::string> NameLines(std::string name, std::size_t& width) {
-  std::ranges::replace(name, '_', ' ');
-  std::ranges::replace(name, '\n', ' ');
-  const std::vector<std::string_view> words = PartsOf(name, ' ');
-  for (const std::string_view word : words) width = std::max(width, CharactersIn(word));
-  return LinesOf(words, width);
-}
-
 std::string CellCsv(const Json& value) {
   if (value.is_null() || value == "") return "";
   return value.is_number() ? value.dump() : io::CsvCell(CellText(value));
@@ -71,21 +61,16 @@ std::string TableText(const Json& rows, int digits) {
   if (all.empty()) return "";
   // Members that not every row has come last.
   const Cells& longest = *std::ranges::max_element(all, {}, &Cells::size);
-  constexpr std::size_t kNameLines = 5;
-  std::vector<std::string> lines(kNameLines + all.size());
+  std::vector<std::string> lines(all.size() + 1);
   for (std::size_t c = 0; c < longest.size(); ++c) {
-    std::vector<std::string> column;
+    std::vector<std::string> column = {longest[c].first};
+    std::ranges::replace(column[0], '\n', ' ');
     bool is_right = false;
-    std::size_t width = 0;
     for (const Cells& cells : all) {
       column.push_back(c < cells.size() ? CellText(cells[c].second, digits) : "");
-      width = std::max(width, CharactersIn(column.back()));
       is_right = is_right || (c < cells.size() && cells[c].second.is_number());
     }
-    std::vector<std::string> name = NameLines(longest[c].first, width);
-    name.resize(std::min(name.size(), kNameLines));
-    name.insert(name.begin(), kNameLines - name.size(), "");  // stands right above the cells
-    column.insert(column.begin(), name.begin(), name.end());
+    const std::size_t width = CharactersIn(*std::ranges::max_element(column, {}, CharactersIn));
     for (std::size_t k = 0; k < lines.size(); ++k) {
       lines[k] += is_right ? fmt::format("  {:>{}}", column[k], width)
                            : fmt::format("  {:<{}}", column[k], width);
@@ -94,7 +79,7 @@ std::string TableText(const Json& rows, int digits) {
   std::string text;
   for (std::string& line : lines) {
     line.erase(line.find_last_not_of(' ') + 1);
-    if (!line.empty()) text += line + '\n';
+    text += line + '\n';
   }
   return text;
 }

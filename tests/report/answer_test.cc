@@ -175,8 +175,8 @@ TEST(Answer, ListsTheModelsThatWereCompared) {
       {.model = dahl},
       {.model = input.fit.model, .converged = true, .rms = 0.4, .held_out_rms = 0.45}};
   const std::string text = Answer(input);
-  EXPECT_THAT(text, HasSubstr("\n  mindlin-dahl  no       0  0.4  0.45\n"
-                              "  dahl          yes     70  0.5     -\n"));
+  EXPECT_THAT(text, HasSubstr("\n  mindlin-dahl  no            0  0.4          0.45\n"
+                              "  dahl          yes          70  0.5             -\n"));
   const Json rows = ComparedModels(MakeReport(input));
   ASSERT_THAT(rows, SizeIs(2));
   EXPECT_EQ(rows[0]["held_out_rms"], 0.45);

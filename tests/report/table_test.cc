@@ -15,15 +15,14 @@ TEST(TableText, AlignsNumbersToTheRightBelowTheirNames) {
   EXPECT_EQ(TableText(Json::array()), "");
 }
 
-TEST(TableText, BreaksLongNamesAndNamesMembersOfMembers) {
+TEST(TableText, NamesMembersOfMembers) {
   const Json rows =
       Json::array({{{"largest_error", 1}, {"of", {{"a", 2}, {"b", 3}}}, {"list", {1}}},
                    {{"largest_error", 1}, {"of", {{"a", 2}, {"b", 3}}}, {"c", 4}}});
   EXPECT_EQ(TableText(rows),
-            "  largest  of  of\n"
-            "    error   a   b  c\n"
-            "        1   2   3\n"
-            "        1   2   3  4\n");
+            "  largest_error  of a  of b  c\n"
+            "              1     2     3\n"
+            "              1     2     3  4\n");
 }
 
 TEST(TableCsv, HasEveryDigitAndNothingOfNull) {
