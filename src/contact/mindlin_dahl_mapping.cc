@@ -147,31 +147,6 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
   return std::nullopt;
 }
 
-// Names of the missing ones, in words.
-
-void AppendMissingElasticConstants(const KnownContact& known, std::vector<std::string>& missing) {
-  const std::size_t before = missing.size();
-  for (const auto& [body, number] : {std::pair{&known.body_1, 1}, std::pair{&known.body_2, 2}}) {
-    if (!body->youngs_modulus) {
-      missing.push_back(fmt::format("Young's modulus of body {}", number));
-    }
-    if (!body->poisson_ratio) {
-      missing.push_back(fmt::format("the Poisson ratio of body {}", number));
-    }
-  }
-  constexpr std::size_t kAll = 4;
-  if (missing.size() < before + kAll) return;
-  missing.resize(before);
-  missing.emplace_back("E and ν of both bodies");
-}
-
-/// Names the missing inputs from which the contact radius would follow with the loop.
-std::string RadiusInputs(const KnownContact& known) {
-  std::vector<std::string> elastic;
-  AppendMissingElasticConstants(known, elastic);
-  return fmt::format("the tangential compliance (or, to derive it: {})", fmt::join(elastic, ", "));
-}
-
 }  // namespace
 
 void Validate(const KnownContact& known) {
@@ -181,26 +156,6 @@ void Validate(const KnownContact& known) {
   RequireBody(known.body_1, 1);
   RequireBody(known.body_2, 2);
   if (KnowsRadii(known)) EquivalentRadiusOf(known);  // refuses two planes
-}
-
-std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity) {
-  std::vector<std::string> missing;
-  const bool needs_load = quantity == ContactQuantity::kFrictionCoefficient ||
-                          quantity == ContactQuantity::kEquivalentRadius ||
-                          quantity == ContactQuantity::kMaximumPressure;
-  if (needs_load && !known.normal_load) missing.emplace_back("the normal load");
-  if (quantity == ContactQuantity::kContactRadius && !KnowsCompliance(known)) {
-    missing.push_back(RadiusInputs(known));
-  } else if (quantity == ContactQuantity::kTangentialCompliance && !known.contact_radius) {
-    missing.emplace_back("the contact radius");
-  } else if (quantity == ContactQuantity::kEquivalentRadius) {
-    // The elastic constants give the compliance too, and with it the contact radius.
-    AppendMissingElasticConstants(known, missing);
-  } else if (quantity == ContactQuantity::kMaximumPressure && !known.contact_radius &&
-             !KnowsCompliance(known)) {
-    missing.push_back("the contact radius or " + RadiusInputs(known));
-  }
-  return missing;
 }
 
 models::BranchLaw MapMindlinToDahl(const MindlinContact& contact) {

@@ -152,9 +152,6 @@ class Writer {
     add("load", first.normal_load, "");
     const std::string name = NameOf(report_.files());
     if (columns.empty()) return Add("record", name);
-    if (report_.sample_rate) {
-      columns.push_back(fmt::format("time by --sample-rate {:g} Hz", *report_.sample_rate));
-    }
     Add("columns", fmt::format("{}: {}", name, fmt::join(columns, ", ")));
   }
 

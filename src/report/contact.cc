@@ -1,8 +1,5 @@
 #include "mindahl/report/contact.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,12 +28,17 @@ struct Dependence {
   [[nodiscard]] double LogAt(double value) const {
     return exponent * std::log(factor == 0 ? value : 1 + factor * value);
   }
+  /// False where the parameter has no value, but a limit or nothing.
+  [[nodiscard]] bool has_value() const {
+    return exponent == 0 || WhatIsShown(*parameter).value.has_value();
+  }
   /// Returns how far the interval of the parameter takes the logarithm up, or down, negative where
   /// the parameter falls; empty where that end is open.
   [[nodiscard]] std::optional<double> WayTo(bool up) const {
-    if (parameter->status == ParameterStatus::kFixed || exponent == 0) return 0.0;
+    const Shown shown = WhatIsShown(*parameter);
+    if (shown.is_held || exponent == 0) return 0.0;
     const bool rises = up == (exponent * (factor == 0 ? 1 : factor) > 0);
-    const std::optional<double>& end = rises ? parameter->upper95 : parameter->lower95;
+    const std::optional<double>& end = rises ? shown.upper : shown.lower;
     if (!end) return std::nullopt;
     const double way = std::abs(LogAt(*end) - LogAt(parameter->value));
     return std::isfinite(way) ? std::optional(rises ? way : -way) : std::nullopt;
@@ -54,11 +56,10 @@ double CorrelationOf(const FitResult& fit, const Dependence& one, const Dependen
 }
 
 /// Sets value and ends of a quantity > 0: the ways of its parameters added in quadrature, with
-/// their correlation and the uncertainty of its inputs.
+/// their correlation and the uncertainty of its inputs. Of one that has a limit alone it has one.
 void Fill(const FitResult& fit, const UncertainValue& found, const Dependence& one,
           const Dependence& other, ContactQuantity& quantity) {
-  quantity.value = found.value;
-  quantity.why = "the interval of what it follows from is open";
+  if (one.has_value() && other.has_value()) quantity.value = found.value;
   const double of_inputs = NormalQuantile(fit.confidence) * found.standard_error / found.value;
   for (const bool up : {false, true}) {
     const std::optional<double> first = one.WayTo(up);
@@ -79,7 +80,6 @@ struct QuantityRow {
   double exponent;  // of the parameter, unless the contact radius is given
   Kind kind;
   bool is_of_sphere = true;  // follows only where Hertz's law of the load is not denied
-  const char* why = "";      // inputs that it needs; "" for those of contact::MissingInputs()
 };
 
 constexpr std::array kQuantities = {
@@ -88,13 +88,10 @@ constexpr std::array kQuantities = {
     QuantityRow{"contact_radius", "a", "m", "sigma", 1, Kind::kContactRadius, false},
     QuantityRow{"compliance", "G*", "1/Pa", "sigma", -1, Kind::kTangentialCompliance, false},
     QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", 1, Kind::kStiffnessRatio,
-                false, "needs materials, radii and load, or contact radius and compliance"},
+                false},
     QuantityRow{"equivalent_radius", "ρ", "m", "sigma", 3, Kind::kEquivalentRadius},
     QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma", -2, Kind::kMaximumPressure},
 };
-
-constexpr std::string_view kWhyNoSphere =
-    "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
 
 /// False where a loop that slides measures another force in that direction: then the asymmetry and
 /// the offset of the force stand for each other.
@@ -117,11 +114,8 @@ ContactQuantity SlipForce(const FitResult& fit, std::string_view name, std::stri
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
   const double force = slip_force.value * (1 + sense * asymmetry.value);
-  if (!slip_force.is_known() || !asymmetry.is_known() || !(force > 0)) {
-    quantity.why = "slip_force or asymmetry is not identifiable";
-  } else if (!IsThatOfThePlateau(fit, sense, force)) {
-    quantity.why = "the measured strokes do not show it: it stands for an offset of the force";
-  } else {
+  if (slip_force.is_known() && asymmetry.is_known() && force > 0 &&
+      IsThatOfThePlateau(fit, sense, force)) {
     Fill(fit, force, {&slip_force, 1}, {&asymmetry, 1, sense}, quantity);
   }
   return quantity;
@@ -136,7 +130,6 @@ bool ExcludesAThird(const ParameterEstimate& estimate, double margin = 0.0) {
 
 ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
   ContactQuantity load{.name = "normal_load", .symbol = "N", .unit = "N"};
-  load.why = known.normal_load ? "exact" : "not given, and no column has it";
   if (!known.normal_load) return load;
   load.value = known.normal_load->value;
   const double half_width = NormalQuantile(fit.confidence) * known.normal_load->standard_error;
@@ -159,34 +152,12 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
         .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter});
     const ParameterEstimate& parameter = *fit.Find(row.parameter);
     const bool has_radius = row.is_of_sphere && known.contact_radius;
-    const Dependence dependence{&parameter, has_radius ? 0.0 : row.exponent};
     std::optional<UncertainValue> found;
-    if (sigma.value > 0 && slip_force.value > 0) {
+    if (sigma.value > 0 && slip_force.value > 0 && !(row.is_of_sphere && denies_hertz)) {
       found = contact::IdentifyContact(row.kind, sigma.value, slip_force.value, known);
     }
-    if (row.is_of_sphere && denies_hertz) {
-      quantity.why = kWhyNoSphere;
-    } else if (!found) {
-      quantity.why = row.why;
-      if (quantity.why.empty()) {
-        quantity.why =
-            fmt::format("needs {}", fmt::join(contact::MissingInputs(known, row.kind), ", "));
-      }
-    } else if (dependence.exponent != 0 && !parameter.is_known()) {
-      quantity.why = fmt::format("needs an identifiable {}", row.parameter);
-      const std::optional<double> limit = WhatIsShown(parameter).lower;
-      if (row.name == "friction_coefficient" && limit) {
-        quantity.lower = found->value * *limit / parameter.value;
-      }
-    } else {
-      Fill(fit, *found, dependence, {&parameter}, quantity);
-      const Shown shown = WhatIsShown(parameter);
-      if (dependence.exponent != 0 && shown.is_limit()) {
-        quantity.value.reset();
-        const bool has_lower = shown.lower.has_value() == (dependence.exponent > 0);
-        (has_lower ? quantity.upper : quantity.lower).reset();
-        quantity.why = fmt::format("{} is at its bound: it has a limit only", row.parameter);
-      }
+    if (found) {
+      Fill(fit, *found, {&parameter, has_radius ? 0.0 : row.exponent}, {&parameter}, quantity);
     }
     if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
     quantities.push_back(SlipForce(fit, "slip_force_positive", "Tc up", 1));
@@ -196,13 +167,9 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
       .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
   const ParameterEstimate& shape = *fit.Find("alpha");
   const double alpha = shape.status == ParameterStatus::kFixed ? shape.value : kThird;
-  if (!sigma.is_known() || !slip_force.is_known()) {
-    gross_slip.why = "needs an identifiable sigma and slip_force";
-  } else if (TestAlpha(fit).is_rejected.value_or(false)) {
-    gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
-  } else if (alpha >= 1) {
-    gross_slip.why = "slip is never complete where alpha is 1 or more";
-  } else {
+  // It is that of Mindlin's contact, and slip is never complete where α is 1 or more.
+  if (sigma.is_known() && slip_force.is_known() && alpha < 1 &&
+      !TestAlpha(fit).is_rejected.value_or(false)) {
     Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1},
          gross_slip);
   }

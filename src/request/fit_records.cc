@@ -370,7 +370,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
        .notes = std::move(notes),
        .compared = std::move(compared),
        .terms = request.chooses_terms ? std::optional(std::move(asked)) : std::nullopt,
-       .sample_rate = request.columns.sample_rate,
        .next = std::move(next)});
 }
 

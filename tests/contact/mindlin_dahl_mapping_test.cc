@@ -357,35 +357,6 @@ TEST(IdentifyContact, RefusesAFrictionCoefficientThatNoDoubleHolds) {
   EXPECT_THROW(Identify(Quantity::kFrictionCoefficient, {.normal_load = 1e-320}), InvalidArgument);
 }
 
-TEST(MissingInputs, NameEachConstantOfEachBodyThatIsNotKnown) {
-  const KnownBody whole{.youngs_modulus = 2e11, .poisson_ratio = 0.3};
-  const auto missing = [](const KnownBody& body_1, const KnownBody& body_2) {
-    return MissingInputs({.normal_load = 10.0, .body_1 = body_1, .body_2 = body_2},
-                         ContactQuantity::kEquivalentRadius);
-  };
-  EXPECT_THAT(missing(whole, whole), IsEmpty());
-  const KnownBody without_modulus{.poisson_ratio = 0.3};
-  const KnownBody without_ratio{.youngs_modulus = 2e11};
-  EXPECT_THAT(missing(without_modulus, whole), ElementsAre("Young's modulus of body 1"));
-  EXPECT_THAT(missing(whole, without_modulus), ElementsAre("Young's modulus of body 2"));
-  EXPECT_THAT(missing(without_ratio, whole), ElementsAre("the Poisson ratio of body 1"));
-  EXPECT_THAT(missing(without_modulus, without_ratio),
-              ElementsAre("Young's modulus of body 1", "the Poisson ratio of body 2"));
-  EXPECT_THAT(missing({}, without_ratio),
-              ElementsAre("Young's modulus of body 1", "the Poisson ratio of body 1",
-                          "the Poisson ratio of body 2"));
-  EXPECT_THAT(missing({}, {}), ElementsAre("E and ν of both bodies"));
-  EXPECT_THAT(MissingInputs({}, ContactQuantity::kFrictionCoefficient),
-              ElementsAre("the normal load"));
-  EXPECT_THAT(MissingInputs({}, ContactQuantity::kTangentialCompliance),
-              ElementsAre("the contact radius"));
-  const std::string compliance =
-      "the tangential compliance (or, to derive it: E and ν of both bodies)";
-  EXPECT_THAT(MissingInputs({}, ContactQuantity::kContactRadius), ElementsAre(compliance));
-  EXPECT_THAT(MissingInputs({}, ContactQuantity::kMaximumPressure),
-              ElementsAre("the normal load", "the contact radius or " + compliance));
-}
-
 KnownContact SphereOnPlane() { return Known({210e9, 0.3, 0.05}, {210e9, 0.3, kInfinity}); }
 
 TEST(Doubts, AreNoneOfAnOrdinaryContact) {

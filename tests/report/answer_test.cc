@@ -246,14 +246,6 @@ TEST(Answer, NamesAModulusThatNoSolidHasBeforeTheUnitOfTheDisplacement) {
               StartsWith("Young's modulus of body 1 = 2.1e+05 Pa is below"));
 }
 
-TEST(Answer, SaysThatTheTimeIsCounted) {
-  ReportInput input = MadeInput();
-  input.records[0].displacement = {.name = "x [m]", .index = 1, .unit = "m"};
-  input.sample_rate = 100.0;
-  EXPECT_EQ(LineOf(input, "columns"),
-            "loop_1.csv: displacement 'x [m]' (1), time by --sample-rate 100 Hz");
-}
-
 TEST(Answer, OfALoadSeriesThatARigMayBendDoesNotRejectHertz) {
   ReportInput input = MadeInput();
   auto& exponent = testing::AddParameter(input.fit, "load_exponent", "-", 0.216, 0.002);

@@ -108,7 +108,6 @@ TEST(DescribeContact, GivesGrossSlipOfAnExponentThatIsHeld) {
   fit.parameters[1].value = 1.0;
   const ContactQuantity none = Of(DescribeContact(fit, {}), "gross_slip_displacement");
   EXPECT_FALSE(none.value);
-  EXPECT_THAT(none.why, HasSubstr("never complete"));
 }
 
 TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {

@@ -99,10 +99,6 @@ enum class ContactQuantity {
   kHertzPressure,  ///< p₀ [Pa] of Hertz; needs E, ν and R of both bodies, and N
 };
 
-/// Returns, in words ("the normal load"), the inputs that one of the first five quantities still
-/// needs; empty where nothing is missing.
-std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity);
-
 /// Inverts the mapping: from a stiffness and a slip force to a quantity of the contact.
 ///
 /// Knowledge may be redundant. What is given directly wins over what follows from other inputs: G*

@@ -24,14 +24,12 @@ struct ContactQuantity {
   /// inputs are added in quadrature to the half width of the logarithm. Empty where one is open.
   std::optional<double> lower{};
   std::optional<double> upper{};
-  std::string why{};  ///< why value or an end is empty
 };
 
 /// Returns every quantity of the contact of a fit, in the order of the reports: friction
 /// coefficient, slip forces of either direction, contact radius, compliance, equivalent radius,
 /// maximum pressure, gross-slip displacement, σ/(8a/G*) and the normal load. Nothing follows from a
-/// parameter that the record leaves open, and of one that is bounded below μ has its lower end
-/// only.
+/// parameter that the record leaves open; of one that has a limit alone a quantity has one.
 /// @param fit  one that did not fail, of a force along the contact
 /// @throws InvalidArgument as contact::IdentifyContact()
 std::vector<ContactQuantity> DescribeContact(const identification::FitResult& fit,

@@ -51,8 +51,6 @@ struct ReportInput {
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared
   std::optional<identification::TermSelection> terms = {};  ///< if terms were chosen
-  /// [Hz]: counts the time in place of a column; empty where it does not.
-  std::optional<double> sample_rate = {};
   /// The best step that was tried; empty where none helps by a tenth.
   std::optional<NextStep> next = {};
 };
