@@ -46,7 +46,7 @@ struct ReportInput {
   identification::FitResult fit{};
   identification::FitOptions options = {};  ///< options of the fit, with what it chose
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
-  /// What was cut off the records as not of their tests; in a Report also what else does not count.
+  /// Samples cut off the records as not of their tests; in a Report also what else does not count.
   std::vector<LeftOut> left_out = {};
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared

@@ -41,9 +41,9 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
 
 /// Holds what `mindahl batch` answers.
 struct BatchAnswer {
-  std::string rows;   ///< of the table, as JSON
-  std::string table;  ///< as CSV, as `--output` writes it
-  std::string json;   ///< of schema mindahl.batch/1, as `--json` writes it
+  std::string rows;   ///< rows of the table as JSON
+  std::string table;  ///< the same as CSV, which `--output` writes
+  std::string json;   ///< schema mindahl.batch/1, which `--json` writes
   std::string text;
   /// Index of the entries' pages: each with its verdict and parameters, those alone that it
   /// identifies, what failed and why, and the scatter between files against their stated errors.
