@@ -337,7 +337,7 @@ class TrackRun {
   std::optional<io::AppendedFile> output_;
 };
 
-void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
+void RunTrack(const TrackCommandOptions& options, Console& console) {
   RequireDistinctFiles(options.fit.files);
   Validate(options.fit.contact);
   MakeCycleFitOptions(options.fit);
@@ -394,7 +394,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   CLI::Option* const resume = group.AddFlag(
       "--resume", options->resume, "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table")->excludes(resume);
-  OnRun(command, [options, &command, &console] { RunTrack(*options, command, console); });
+  OnRun(command, [options, &console] { RunTrack(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -126,7 +126,8 @@ std::vector<Bar> BarsOf(const Report& report) {
 std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
-  constexpr int kRow = 50;  // [px] of one bar
+  constexpr int kRow = 50;    // [px] of one bar
+  constexpr int kLeast = 64;  // [px]: one bar alone is still to be seen on a telephone
   std::string svg;
   int middle = 31;
   for (const Bar& bar : BarsOf(report)) {

@@ -197,7 +197,7 @@ TEST(Fitter, GoesOnFromOneCycleToTheNextToTheSameMinimum) {
 
 // There the likelihood has several minima, and where one begins decides which is found.
 TEST(Fitter, BeginsAnewWhereCyclesDoNotTellTheLaw) {
-  constexpr double kPartial = 0.04;
+  constexpr double kPartial = 0.12;
   // With a given alpha they know sigma, and Tc no better.
   for (const std::optional<double> alpha : {std::optional<double>(), {kLaw.shape_exponent}}) {
     FitOptions options = OfSteadyCycles();

@@ -125,10 +125,8 @@ std::vector<Place> PlacesUnderForce(const Problem& problem, std::span<const doub
     const std::span<Place> of = std::span(places).subspan(begin, record.size());
     const std::vector<double> rate = Derive(own, times[r], record.reversals);
     for (std::size_t i = 0; i < record.size(); ++i) {
-      of[i] = {.displacement = own[i],
-               .time = times[r][i],
-               .rate = rate[i],
-               .force = record.force[i]};
+      of[i] = {
+          .displacement = own[i], .time = times[r][i], .rate = rate[i], .force = record.force[i]};
     }
     SetProgress(record, own, of);
     begin += record.size();
