@@ -204,8 +204,8 @@ std::string DescribeModels() {
 
 std::string DescribeTerms() {
   std::string text =
-      "terms that are fitted in addition to the law; auto: those that the\nrecord requires, as "
-      "judged by held-out cycles. A column's name, or";
+      "terms that are fitted in addition to the law; auto: those that the\nrecord requires. A "
+      "column's name, or";
   for (const identification::TermGroup& group : identification::TermGroups()) {
     text += fmt::format("\n{}: {}", group.name, group.meaning);
   }

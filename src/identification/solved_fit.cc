@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/requirements.h"

@@ -45,13 +45,19 @@ Json LeftOutJson(const Report& report) {
 Json Parameters(const Report& report) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : report.fit.parameters) {
-    parameters[estimate.name] = {
-        {"value", NumberOrNull(estimate.value)},
-        {"unit", estimate.unit},
-        {"ci95", {NumberOrNull(estimate.lower95), NumberOrNull(estimate.upper95)}},
-        {"standard_error", NumberOrNull(estimate.standard_error)},
-        {"status", Name(estimate.status)},
-        {"identifiability", Name(estimate.identifiability)}};
+    // Where the search stopped at a limit of the program's own there is no value.
+    const bool is_at_limit = (estimate.status == ParameterStatus::kAtLowerBound ||
+                              estimate.status == ParameterStatus::kAtUpperBound) &&
+                             estimate.identifiability == Identifiability::kNotIdentifiable;
+    const auto number = [&](std::optional<double> value) {
+      return is_at_limit ? Json() : NumberOrNull(value);
+    };
+    parameters[estimate.name] = {{"value", number(estimate.value)},
+                                 {"unit", estimate.unit},
+                                 {"ci95", {number(estimate.lower95), number(estimate.upper95)}},
+                                 {"standard_error", number(estimate.standard_error)},
+                                 {"status", Name(estimate.status)},
+                                 {"identifiability", Name(estimate.identifiability)}};
   }
   return parameters;
 }
@@ -77,25 +83,24 @@ Json MeasuredJson(const Report& report) {
   const auto if_closed = [&](std::optional<double> value) {
     return facts.closed ? NumberOrNull(value) : Json();
   };
-  return If(
-      !report.failed(),
-      {{"half_gap",
-        {{"value", if_closed(facts.half_gap)},
-         {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
-       {"amplitude", NumberOrNull(facts.amplitude)},
-       {"peak_force", NumberOrNull(facts.peak_force)},
-       {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
-       {"energy_ratio", if_closed(facts.energy_ratio)},
-       {"asymmetry", if_closed(facts.asymmetry)},
-       {"slides", loop::Slides(facts)},
-       {"cycles", ListOf(facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
-          return {{"start", cycle.start},
-                  {"amplitude", NumberOrNull(cycle.amplitude)},
-                  {"peak_force", NumberOrNull(cycle.peak_force)},
-                  {"half_gap", NumberOrNull(cycle.half_gap)},
-                  {"energy", NumberOrNull(cycle.energy)},
-                  {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
-        })}});
+  return If(!report.failed(),
+            {{"half_gap",
+              {{"value", if_closed(facts.half_gap)},
+               {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
+             {"amplitude", NumberOrNull(facts.amplitude)},
+             {"peak_force", NumberOrNull(facts.peak_force)},
+             {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
+             {"energy_ratio", if_closed(facts.energy_ratio)},
+             {"asymmetry", if_closed(facts.asymmetry)},
+             {"slides", loop::Slides(facts)},
+             {"cycles", ListOf(facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
+                return {{"start", cycle.start},
+                        {"amplitude", NumberOrNull(cycle.amplitude)},
+                        {"peak_force", NumberOrNull(cycle.peak_force)},
+                        {"half_gap", NumberOrNull(cycle.half_gap)},
+                        {"energy", NumberOrNull(cycle.energy)},
+                        {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
+              })}});
 }
 
 Json AdequacyJson(const Report& report) {

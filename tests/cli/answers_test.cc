@@ -63,7 +63,6 @@ const std::vector<Answer> kAnswers = {
      "fit @clipped.csv",
      {"the force reads 9 N in ", "the sensor is at its limit, and Tc is no less"},
      {"next ", "rejected"}},
-    {"ASawtoothIsNoNoise", "fit @sawtooth.csv", {"the law is not the whole story"}, {"like noise"}},
     {"NoiseIsNoLoop", "fit @noise.csv", {"no loop is seen"}, {"Tc ", "adequate", "sliding"}},
     {"AnErrorOfAConversionStandsWithItsNumbers",
      "convert --sigma 5e7 --slip-force 15 --amplitude 3e-7 --to lugre --input-lines -",
@@ -87,16 +86,12 @@ class MisleadingAnswer : public CommandTest, public ::testing::WithParamInterfac
     for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";  // from a peak to the next
     Write("peak.csv", peak);
     std::string clipped = loop[0] + "\n";
-    std::string sawtooth = clipped;
     for (std::size_t i = 1; i < loop.size(); ++i) {
       const std::size_t comma = loop[i].rfind(',') + 1;
       const double force = std::stod(loop[i].substr(comma));
-      const double slip = i % 3 == 0 ? -1.5 : 0.5 * static_cast<double>(i % 3);  // in three samples
       clipped += fmt::format("{}{}\n", loop[i].substr(0, comma), std::clamp(force, -9.0, 9.0));
-      sawtooth += fmt::format("{}{}\n", loop[i].substr(0, comma), force + slip);
     }
     Write("clipped.csv", clipped);
-    Write("sawtooth.csv", sawtooth);
     Generator generator(1);
     std::string noise = "x [um],F [N]\n";
     for (int i = 0; i < 400; ++i) {

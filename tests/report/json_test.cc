@@ -23,6 +23,16 @@ TEST(Json, OfAFitThatFailedHasNoNumberOfIt) {
   EXPECT_EQ(document["warnings"][0]["code"], "fit_failed");
 }
 
+TEST(Json, GivesNoValueWhereTheSearchStoppedAtItsOwnLimit) {
+  ReportInput input = MadeInput();
+  input.fit.parameters.push_back(testing::MadeParameter("slip_speed", "-", 1.0, 0.5));
+  input.fit.parameters.back().status = identification::ParameterStatus::kAtUpperBound;
+  input.fit.parameters.back().identifiability = identification::Identifiability::kNotIdentifiable;
+  const Json parameter = Document(std::move(input))["parameters"]["slip_speed"];
+  EXPECT_TRUE(parameter["value"].is_null());
+  EXPECT_TRUE(parameter["ci95"][1].is_null());
+}
+
 TEST(Json, NamesTheColumnsThatWereRead) {
   ReportInput input = MadeInput();
   input.records[0].force = {.name = "F [kN]", .index = 3, .unit = "kN"};

@@ -31,7 +31,8 @@ void Validate(const FitOptions& options) {
   if (options.response() == loop::Channel::kDisplacement && options.force_noise) {
     throw InvalidArgument("noise of the force, which is imposed and taken as exact: leave it out");
   }
-  if (options.response_noise()) RequirePositive("noise of the response", *options.response_noise());
+  if (options.response_noise())
+    RequirePositive("displacement noise [m]", *options.response_noise());
   if (options.model->memory == models::Memory::kNone && HasTerm(options, TermId::kAsymmetry) &&
       HasTerm(options, TermId::kRigStiffness)) {
     throw InvalidArgument(
