@@ -46,7 +46,7 @@ TEST(MeasuredRecord, OfASealOrADamperThatSlidesHasASlipForceThatContainsItsGap) 
   const std::vector<std::pair<std::string, Words>> records = {
       {"seals/rerun_1_O-ring257_5bar.csv", kSealColumns},
       {"seals/Circle_2bar.csv", kSealColumns},
-      {"mr_damper_labcontrol/ensaio1.1.csv", "--terms viscous"},
+      {"mr_damper_labcontrol/ensaio1.1.csv", {}},
       {"mr_damper_utfsm/25mm_0.25Hz_0.5A.csv", {}}};
   for (const auto& [file, options] : records) {
     SCOPED_TRACE(file);
