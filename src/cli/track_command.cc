@@ -55,7 +55,7 @@ struct TrackedTest {
 
   /// Adds the fit of the next row of the table.
   void Add(const CycleFit& fit) {
-    // What is between the ends of a piece that does not close is no energy dissipated.
+    // The work of a cycle that does not close is not all dissipated.
     const bool is_loop = !fit.HasFlag("not_closed") && !fit.HasFlag("rows_missing");
     if (is_loop) energy += static_cast<double>(together) * fit["energy"].value_or(0.0);
     ++fits;

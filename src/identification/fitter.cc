@@ -233,8 +233,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
 bool Fitter::State::MayContinue() const {
   return result.converged && TellsTheLaw(result) &&
          std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
-           return estimate.status == ParameterStatus::kAtLowerBound ||
-                  estimate.status == ParameterStatus::kAtUpperBound ||
+           return estimate.is_at_bound() ||
                   (estimate.name == "alpha" && estimate.status == ParameterStatus::kFixed &&
                    estimate.value == 0);
          });

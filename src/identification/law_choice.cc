@@ -100,10 +100,8 @@ double IndependentSamples(const ScaledRecords& data, const FitResult& fit,
 
 /// True if α, σ or Tc is at a bound, where the law turns into another one.
 bool LawIsAtBound(const FitResult& fit) {
-  return std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, [&](const char* name) {
-    const ParameterStatus status = fit.Find(name)->status;
-    return status == ParameterStatus::kAtLowerBound || status == ParameterStatus::kAtUpperBound;
-  });
+  return std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"},
+                             [&](const char* name) { return fit.Find(name)->is_at_bound(); });
 }
 
 /// True if all swings of the records are as wide as the widest, but for the steps of an encoder,

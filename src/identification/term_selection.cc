@@ -139,12 +139,10 @@ bool OpensSlipForce(const FitResult& without, const FitResult& with, double wide
 /// does.
 bool StopsAtLimit(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
-    const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
-                             estimate.status == ParameterStatus::kAtUpperBound;
     const Term& term = *TermOfParameter(estimate.name);
     const bool may_end = term.presence == Presence::kAlways || term.lowest_is_of_theory ||
                          term.highest_is_of_theory || term.id == TermId::kDisplacementOffset;
-    return is_at_bound && !may_end;
+    return estimate.is_at_bound() && !may_end;
   });
 }
 

@@ -29,7 +29,7 @@ const RoleRules& RulesOf(Role role);
 
 /// A column of a table with what is evidence of its role.
 struct Column {
-  // Of the header: "Time [s]" is the name "Time" with the unit "s".
+  // From the header: "Time [s]" has the name "Time" and the unit "s".
   std::string name = {};
   std::string unit = {};  // as written, perhaps in the units row; "" where the file states none
   std::optional<Dimension> dimension = {};  // of a unit that is known
@@ -39,7 +39,7 @@ struct Column {
   bool is_angular = false;
   bool is_lesser = false;       // commanded, raw or a statistic
   std::size_t other_words = 0;  // in the name
-  // Of the numbers.
+  // From the numbers in its rows:
   bool is_numeric = false;             // half of its rows or more have one
   bool is_clock = false;               // they are times of day
   double least = 0.0, greatest = 0.0;  // infinite the other way without any

@@ -45,10 +45,9 @@ Json LeftOutJson(const Report& report) {
 Json Parameters(const Report& report) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : report.fit.parameters) {
-    // Where the search stopped at a limit of the program's own there is no value.
-    const bool is_at_limit = (estimate.status == ParameterStatus::kAtLowerBound ||
-                              estimate.status == ParameterStatus::kAtUpperBound) &&
-                             estimate.identifiability == Identifiability::kNotIdentifiable;
+    // The value at a bound that determines nothing is the bound's: it is not reported.
+    const bool is_at_limit =
+        estimate.is_at_bound() && estimate.identifiability == Identifiability::kNotIdentifiable;
     const auto number = [&](std::optional<double> value) {
       return is_at_limit ? Json() : NumberOrNull(value);
     };

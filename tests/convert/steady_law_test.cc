@@ -76,7 +76,7 @@ TEST(SteadyLaw, OfBoucWenMatchesIntegratedEquation) {
       const std::vector<double> force = branch.Of(law);
       EXPECT_NEAR(force.front() / law.slip_force, -force.back() / law.slip_force, kStated);
       for (std::size_t i = 0; i < force.size(); ++i) {
-        // What the way is off makes so much of force.
+        // The force that corresponds to the error of the displacement.
         const double missing = (WayBetween(law, force.front(), force[i]) - branch.distance[i]) *
                                RisingSlope(law, force[i]);
         EXPECT_NEAR(missing / law.slip_force, 0.0, kStated)

@@ -72,6 +72,10 @@ struct ParameterEstimate {
   bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
   Identifiability identifiability = Identifiability::kNotIdentifiable;
 
+  /// True if the search stopped at a bound, of the user's or of the program's own.
+  [[nodiscard]] bool is_at_bound() const {
+    return status == ParameterStatus::kAtLowerBound || status == ParameterStatus::kAtUpperBound;
+  }
   /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
     return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;

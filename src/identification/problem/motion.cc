@@ -49,7 +49,7 @@ MovedPath MoveLate(const ScaledRecord& record, double lag) {
     while (next + 1 < motion.size() && time[next] < at) ++next;
     turn_before(next);
     const double duration = time[next] - time[next - 1];
-    // Where time stands still, the later.
+    // Two samples may have the same time: the later one counts.
     const double fraction = duration > 0 ? (at - time[next - 1]) / duration : 1.0;
     late.samples.push_back(late.displacement.size());
     late.displacement.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));

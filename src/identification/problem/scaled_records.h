@@ -37,11 +37,6 @@ struct ScaledRecord {
   double load = 1.0;      // mean of N over that of all records; 1 where they are not a load series
   double log_load = 0.0;  // its logarithm
 
-  /// N of a sample over the mean of all records, as far as the law knows it.
-  [[nodiscard]] double LoadAt(std::size_t i) const {
-    return load_ratio.empty() ? load : load * load_ratio[i];
-  }
-
   /// Returns the number of turns before the last sample that counts: later ones make no history.
   [[nodiscard]] std::size_t CountTurns() const;
   [[nodiscard]] bool Turns() const { return CountTurns() > 0; }

@@ -192,7 +192,7 @@ class Plane {
     look.cost = solver_.CostAt(theta);
     if (!std::isfinite(look.cost)) return;
     if (!is_forced) {
-      // What is held stays: the look tells the ratios.
+      // Parameters that are held keep their values; the others follow from the ratios of the look.
       if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
       theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
       theta[kRig] = rig_is_held ? rig.theta : log_rig + theta[kSlipForce];
