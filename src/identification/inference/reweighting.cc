@@ -67,10 +67,8 @@ double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
   return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
 }
 
-double RmsDifference(std::span<const double> a, std::span<const double> b) {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(squares / static_cast<double>(a.size()));
+double Rms(const Eigen::VectorXd& values) {
+  return values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
 
 /// Fits of one problem, and the weights that each implies for the next.
@@ -84,8 +82,8 @@ class Reweighting {
         drawn_(drawn),
         solver_(solver),
         solution_(solution),
-        force_(problem.size()),
-        from_displacement_(problem.size()) {
+        force_(static_cast<Eigen::Index>(problem.size())),
+        from_displacement_(Eigen::VectorXd::Zero(force_.size())) {
     for (const ScaledRecord& record : data.records) {
       counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
     }
@@ -96,7 +94,9 @@ class Reweighting {
   /// Fits until the forces settle.
   /// @returns whether they did
   bool Settle(Loss loss) {
+    constexpr double kTurnsBack = 0.5;
     double change = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(force_.size());
     for (int round = 0; round < kMostRounds; ++round) {
       SetWeights(WeightsByNoise(loss));
       if (loss != Loss::kNone) {
@@ -106,9 +106,12 @@ class Reweighting {
         solver_.Bind(problem_);
         solver_.Solve(start, SolverOptionsOf(options_), solution_);
       }
-      const std::vector<double> last_force = force_;
+      const Eigen::VectorXd last_force = force_;
       PredictForce();
-      const double last_change = std::exchange(change, RmsDifference(force_, last_force));
+      const Eigen::VectorXd last_step = std::exchange(step, force_ - last_force);
+      // Weights and forces that chase each other meet half way.
+      if (step.dot(last_step) < -kTurnsBack * last_step.squaredNorm()) fraction_ /= 2;
+      const double last_change = std::exchange(change, Rms(step));
       // Changes that become less do so by the same factor.
       const bool is_predicted = round > 0 && change < last_change && solution_.converged;
       const double left = is_predicted ? change * change / last_change : change;
@@ -121,8 +124,7 @@ class Reweighting {
   /// @returns false where all samples are so far out that the loss has no minimum
   bool ApplyLoss(Loss loss) {
     std::vector<double> weights = WeightsByNoise(loss);
-    std::vector<double> residual = force_;
-    TakeOffMeasured(data_, residual);
+    const std::vector<double> residual = Residual();
     const std::unique_ptr<ceres::LossFunction> function = LossOf(loss);
     double influence_squares = 0.0;
     double slopes = 0.0;
@@ -166,7 +168,15 @@ class Reweighting {
  private:
   void PredictForce() {
     solver_.response.Bind(problem_);
-    Predict(problem_, solution_.theta, solver_.response, force_);
+    Predict(problem_, solution_.theta, solver_.response,
+            {force_.data(), static_cast<std::size_t>(force_.size())});
+  }
+
+  /// Returns model − measured of every sample, without weights.
+  [[nodiscard]] std::vector<double> Residual() const {
+    std::vector<double> residual(force_.begin(), force_.end());
+    TakeOffMeasured(data_, residual);
+    return residual;
   }
 
   /// Finds the noise, and the root weights of the samples by it: weighted residuals have the
@@ -174,10 +184,11 @@ class Reweighting {
   std::vector<double> WeightsByNoise(Loss loss) {
     // The draws of the last time hold where the forces have moved by next to nothing since.
     if (drawn_ != nullptr &&
-        (drawn_at_.empty() || !(RmsDifference(force_, drawn_at_) < kHarmless * unit_))) {
+        (drawn_at_.size() == 0 || !(Rms(force_ - drawn_at_) < kHarmless * unit_))) {
       const Eigen::MatrixXd errors = ForceErrors(*drawn_, problem_, solution_.theta);
-      Eigen::Map<Eigen::VectorXd>(from_displacement_.data(), errors.rows()) =
-          errors.rowwise().squaredNorm() / static_cast<double>(errors.cols());
+      from_displacement_ +=
+          fraction_ * (errors.rowwise().squaredNorm() / static_cast<double>(errors.cols()) -
+                       from_displacement_);
       drawn_at_ = force_;
     }
     noise_ = PlainNoise(data_, options_, 0.0, 0);
@@ -185,14 +196,16 @@ class Reweighting {
     const double of_force = std::max(noise_.force, kRoundingRms);
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-      if (counts_[i] != 0) least = std::min(least, from_displacement_[i]);
+      if (counts_[i] != 0)
+        least = std::min(least, from_displacement_[static_cast<Eigen::Index>(i)]);
     }
     unit_ = std::sqrt(of_force * of_force + least);
     noise_.variance = unit_ * unit_;
     std::vector<double> weights(counts_.size());
     if (drawn_ != nullptr) noise_.force_share.resize(counts_.size());
     for (std::size_t i = 0; i < counts_.size(); ++i) {
-      const double deviation = std::sqrt(of_force * of_force + from_displacement_[i]);
+      const double deviation =
+          std::sqrt(of_force * of_force + from_displacement_[static_cast<Eigen::Index>(i)]);
       if (counts_[i] != 0) weights[i] = unit_ / deviation;
       if (drawn_ != nullptr) noise_.force_share[i] = of_force / deviation;
     }
@@ -203,8 +216,7 @@ class Reweighting {
   /// displacement determine it. Where outliers are expected, that for which the standardised
   /// residuals have the median of normal ones.
   [[nodiscard]] double ForceNoise(Loss loss) const {
-    std::vector<double> residual = force_;
-    TakeOffMeasured(data_, residual);
+    const std::vector<double> residual = Residual();
     const double samples_a_degree = static_cast<double>(data_.counted) / degrees_;
     const auto excess = [&](double variance) {
       std::vector<double> standardised;  // for the median
@@ -212,7 +224,7 @@ class Reweighting {
       double precisions = 0.0;
       for (std::size_t i = 0; i < residual.size(); ++i) {
         if (counts_[i] == 0) continue;
-        const double precision = 1 / (variance + from_displacement_[i]);
+        const double precision = 1 / (variance + from_displacement_[static_cast<Eigen::Index>(i)]);
         squares += residual[i] * residual[i] * (precision * precision);
         precisions += precision;
         if (loss != Loss::kNone) standardised.push_back(residual[i] * std::sqrt(precision));
@@ -249,10 +261,11 @@ class Reweighting {
   Solver& solver_;
   Solution& solution_;
   std::vector<unsigned char> counts_;
-  std::vector<double> force_;              // of the solution
-  std::vector<double> from_displacement_;  // variance σ_T² of the draws at every sample
-  std::vector<double> drawn_at_;           // forces
-  double unit_ = 0.0;                      // deviation of the weighted residuals
+  Eigen::VectorXd force_;              // of the solution
+  Eigen::VectorXd from_displacement_;  // variance σ_T² of the draws at every sample
+  double fraction_ = 1.0;              // of new draws in it
+  Eigen::VectorXd drawn_at_;           // forces
+  double unit_ = 0.0;                  // deviation of the weighted residuals
   double degrees_ = 1.0;
   Noise noise_;
 };
