@@ -20,9 +20,10 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   const Parameters& parameters = candidate.problem.parameters;
   std::vector<std::size_t> terms;
   for (const std::size_t p : parameters.free()) {
-    // Only terms that lead a group; its further coefficients stay with them.
+    // Further coefficients of a group stay with the one that leads it, an exponent with its factor.
     const Term& term = *parameters[p].term;
-    const bool is_on_demand = term.presence == Presence::kOnDemand && !term.group.empty();
+    const bool leads = !term.group.empty() || term.start != 0;
+    const bool is_on_demand = term.presence == Presence::kOnDemand && leads;
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
   for (const std::size_t p : terms) {
