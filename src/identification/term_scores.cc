@@ -22,7 +22,7 @@ constexpr double kOwnShare = 3e-5;
 /// Exponents at which the columns that they shape are tried.
 constexpr std::array kTriedExponents = {0.25, 0.5, 1.0};
 /// Fraction of the distance to a bound beyond which no search begins.
-constexpr double kOfBound = 0.9;
+constexpr double kOfBound = 0.99;
 
 /// Returns the θ at which a term has no effect; for an exponent that of a linear force.
 double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {

@@ -83,6 +83,12 @@ bool FollowsForce(const TermCandidate& candidate) {
   return !candidate.choice.covariate.empty() && candidate.considered.obstacle == "confounded";
 }
 
+/// True of a term whose effect is not linear: a fit says what it gains, a score does not.
+bool MovesContact(const TermCandidate& candidate) {
+  const std::vector<std::string>& terms = candidate.choice.terms;
+  return !terms.empty() && FindTerm(terms.front())->motion != ContactMotion::kMeasured;
+}
+
 TermCandidate CandidateOf(const TermGroup& group) {
   TermCandidate candidate;
   candidate.considered.name = group.name;
@@ -236,6 +242,7 @@ class Selection {
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(std::size_t candidate, Model model);
   bool Round();
+  bool Move();
   void KeepAlternatives(const Gain& added, std::span<const Gain> gains);
   void FitLast(const FitResult& law);
 
@@ -443,6 +450,20 @@ bool Selection::Round() {
   return false;
 }
 
+/// Adds the better of the terms that move the contact, where no other can be added.
+bool Selection::Move() {
+  if (IsNearlyWhite(base_.fit, Limits())) return false;
+  std::optional<std::pair<std::size_t, Model>> best;
+  for (const Gain& gain : Score()) {
+    const TermCandidate& candidate = candidates_[gain.candidate];
+    if (!MovesContact(candidate) || fits_ + kLastFits >= kMostFits) continue;
+    Model model = FitWith(candidate.choice, &gain.score.values);
+    if (!ObstacleTo(model).empty()) continue;
+    if (!best || model.fit.rms < best->second.fit.rms) best = {gain.candidate, std::move(model)};
+  }
+  return best && Add(best->first, std::move(best->second));
+}
+
 TermSelection Selection::Run(const FitOptions& options) {
   ++fits_;
   result_.options = options;
@@ -453,7 +474,7 @@ TermSelection Selection::Run(const FitOptions& options) {
   }
   const FitResult law = result_.fit;
   if (!Begin(options, law)) return std::move(result_);
-  while (Round()) {
+  while (Round() || Move()) {
   }
   if (!result_.added.empty()) FitLast(law);
   for (const TermCandidate& candidate : candidates_) {
