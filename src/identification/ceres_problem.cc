@@ -47,7 +47,10 @@ CeresProblem::State::State(std::span<const loop::RecordView> records, FitOptions
   AddColumns(options, prepared, /*with_others=*/false, data);
   std::vector<models::InitialState> states;
   states.reserve(data.records.size());
-  for (const RecordFit& record : fit.records) states.push_back(record.initial_state);
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    states.push_back(fit.records[r].initial_state);
+    data.records[r].turns_between = fit.records[r].turns_between;
+  }
   problem = Problem{&data, options.model, states, Parameters(data, options, states)};
   for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
     const Parameter& parameter = problem->parameters[p];

@@ -87,6 +87,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     RecordFit& fit = result.records.emplace_back();
     static_cast<loop::RecordReading&>(fit) = prepared;
     fit.initial_state = solved.best.problem.states[r];
+    fit.turns_between = data.records[r].turns_between;
     if (data.is_forced()) fit.displacement_noise = solved.noise.force * data.length;
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;

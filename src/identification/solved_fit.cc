@@ -13,6 +13,7 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/requirements.h"
+#include "identification/problem/turning_points.h"
 
 namespace mindahl::identification {
 namespace {
@@ -95,6 +96,30 @@ SolvedFit FitBestState(const Attempt& attempt) {
   return {.best = std::move(best), .of_other_state = law};
 }
 
+/// Fits once more with turns between samples, where these may matter, and keeps that unless it fits
+/// clearly worse: a rig turns between samples, a simulation may turn at them.
+void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
+  // [standard errors of the force] With a bias of this size a 95 % interval covers 94.5 %.
+  constexpr double kMatters = 0.2;
+  constexpr double kClearly = 4.0;  // of twice the log-likelihood
+  Solution& solution = candidate.solution;
+  const double farthest = TurnBetweenSamples(attempt.data);
+  const double shift = farthest * std::exp(solution.theta[kStiffness]);
+  const double error =
+      std::sqrt(solution.sum_of_squares) / static_cast<double>(attempt.data.counted);
+  if (shift > kMatters * error) {
+    Solution between;
+    attempt.solver.Bind(candidate.problem);
+    attempt.solver.Solve(solution.theta, SolverOptionsOf(attempt.options), between);
+    const double ratio = between.sum_of_squares / solution.sum_of_squares;
+    if (static_cast<double>(attempt.data.counted) * std::log(ratio) < kClearly) {
+      solution = std::move(between);
+      return;
+    }
+  }
+  TurnAtSamples(attempt.data);
+}
+
 }  // namespace
 
 SolvedFit SolveFit(const Attempt& attempt) {
@@ -103,6 +128,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   Candidate& best = solved.best;
   RequireToldAsymmetry(best.problem);
   if (!std::isfinite(best.solution.sum_of_squares)) return solved;
+  TryTurnsBetweenSamples(attempt, best);
   if (options.loss == Loss::kNone && attempt.drawn == nullptr) {
     solved.noise = PlainNoise(attempt.data, options, best.solution.sum_of_squares,
                               best.problem.parameters.free().size());

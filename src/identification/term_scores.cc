@@ -128,6 +128,9 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
 void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
                           std::span<const TermChoice> choices) {
   states_.assign(data_.records.size(), fit.initial_state);
+  for (std::size_t r = 0; r < data_.records.size(); ++r) {
+    data_.records[r].turns_between = fit.records[r].turns_between;
+  }
   values_.clear();
   free_.clear();
   for (const ParameterEstimate& estimate : fit.parameters) {

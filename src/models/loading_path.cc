@@ -42,13 +42,11 @@ void RequireAsymmetry(double asymmetry, Memory memory) {
 std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
 /// Returns the direction in which the record sets out.
-std::int8_t FirstDirection(std::span<const double> displacement,
-                           std::span<const std::size_t> reversals) {
-  const double first_extreme =
-      reversals.empty() ? displacement.back() : displacement[reversals.front()];
-  const double next = reversals.size() > 1    ? displacement[reversals[1]]
-                      : reversals.size() == 1 ? displacement.back()
-                                              : displacement.front();
+std::int8_t FirstDirection(std::span<const double> displacement, std::span<const Turn> turns) {
+  const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
+  const double next = turns.size() > 1    ? turns[1].displacement
+                      : turns.size() == 1 ? displacement.back()
+                                          : displacement.front();
   return SignOf(first_extreme - next);
 }
 
@@ -133,8 +131,14 @@ void AppendToRuns(std::vector<BranchRun>& runs, std::size_t begin, std::size_t e
 
 /// Opens what is open before the first sample.
 void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
-                         std::int8_t direction, Memory memory, const InitialContact& initial) {
-  const auto [lowest, highest] = ExtremesOf(displacement);
+                         std::span<const Turn> turns, Memory memory,
+                         const InitialContact& initial) {
+  auto [lowest, highest] = ExtremesOf(displacement);
+  for (const Turn& turn : turns) {
+    lowest = std::min(lowest, turn.displacement);
+    highest = std::max(highest, turn.displacement);
+  }
+  const std::int8_t direction = FirstDirection(displacement, turns);
   if (initial.state == InitialState::kVirgin) {
     const double origin = initial.unloaded_displacement;
     const double amplitude = std::max(highest - origin, origin - lowest);
@@ -162,12 +166,17 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {
+  std::vector<Turn> turns;
+  turns.reserve(reversals.size());
+  for (const std::size_t reversal : reversals) {
+    if (reversal < displacement.size()) turns.push_back({reversal + 1, displacement[reversal]});
+  }
   LoadingPath path;
-  MakeLoadingPath(displacement, reversals, memory, initial, path);
+  MakeLoadingPath(displacement, turns, memory, initial, path);
   return path;
 }
 
-void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
+void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn> turns,
                      Memory memory, const InitialContact& initial, LoadingPath& path) {
   RequireDisplacements(displacement);
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
@@ -177,24 +186,25 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const std::
   path.runs.clear();
   path.open.clear();
   constexpr std::size_t kInitialBranches = 3;
-  path.branches.reserve(reversals.size() + kInitialBranches);
+  path.branches.reserve(turns.size() + kInitialBranches);
   const bool is_virgin = initial.state == InitialState::kVirgin;
   OpenBranches open(path, memory, is_virgin ? initial.asymmetry : 0.0);
-  OpenInitialBranches(open, displacement, FirstDirection(displacement, reversals), memory, initial);
-
-  std::size_t next_reversal = 0;
-  for (std::size_t i = 0; i < displacement.size();) {
-    const bool turns =
-        next_reversal < reversals.size() && reversals[next_reversal] < displacement.size();
-    const std::size_t end = turns ? reversals[next_reversal] + 1 : displacement.size();
+  OpenInitialBranches(open, displacement, turns, memory, initial);
+  std::size_t i = 0;
+  const auto run_to = [&](std::size_t end) {
     while (i < end) {
       open.Advance(displacement[i]);
       const std::size_t next = i + 1 + open.SamplesAhead(displacement.subspan(i + 1, end - i - 1));
       AppendToRuns(path.runs, i, next, open.Present());
       i = next;
     }
-    if (turns) open.Reverse(displacement[reversals[next_reversal++]]);
+  };
+  for (const Turn& turn : turns) {
+    run_to(turn.next);
+    open.Advance(turn.displacement);
+    open.Reverse(turn.displacement);
   }
+  run_to(displacement.size());
 }
 
 }  // namespace mindahl::models

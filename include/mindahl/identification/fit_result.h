@@ -90,6 +90,8 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 /// its readings is that of the fit.
 struct RecordFit : loop::RecordReading {
   models::InitialState initial_state = models::InitialState::kVirgin;
+  /// True if its motion turns between samples, as these show it, and not at the outermost ones.
+  bool turns_between = false;
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
   /// measured, offsets included; else empty.
   std::vector<double> fitted_displacement;

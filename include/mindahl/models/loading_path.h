@@ -122,8 +122,15 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial);
 
-/// Makes the same into a path whose memory is used again.
-void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
+/// A turn of the motion, which may lie between two samples.
+struct Turn {
+  std::size_t next = 0;       ///< the first sample after it
+  double displacement = 0.0;  ///< [m] where the motion turns
+};
+
+/// Makes the same of a motion whose turns are known, into a path whose memory is used again.
+/// @param turns  in the order of time, alternating in sense
+void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn> turns,
                      Memory memory, const InitialContact& initial, LoadingPath& path);
 
 }  // namespace mindahl::models

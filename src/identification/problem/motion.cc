@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "identification/problem/parameters.h"
+#include "identification/problem/turning_points.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -26,22 +26,20 @@ Interval LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
   return {-longest, longest};
 }
 
-/// Moves a contact whose force is read late. It runs straight from sample to sample and turns at
-/// the reversals, whatever the lag: these are put in between the moved samples, and so are both
-/// ends of the record, beyond which the displacement is constant.
+/// Moves a contact whose force is read late. It runs straight from sample to sample and turns where
+/// the record does, whatever the lag; beyond both ends of the record it rests.
 MovedPath MoveLate(const ScaledRecord& record, double lag) {
   const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
   const std::span<const double> x = motion.displacement;
   const std::span<const double> time = motion.time;
+  const std::vector<models::Turn> turns = TurnsOf(motion);
   MovedPath late;
-  late.displacement.reserve(record.size() + motion.reversals.size() + 2);
-  late.displacement.push_back(x.front());
+  late.displacement.reserve(record.size());
   std::size_t next = 1;  // the sample that the motion comes to next
   std::size_t turn = 0;
   const auto turn_before = [&](std::size_t end) {
-    for (; turn < motion.reversals.size() && motion.reversals[turn] < end; ++turn) {
-      late.reversals.push_back(late.displacement.size());
-      late.displacement.push_back(x[motion.reversals[turn]]);
+    for (; turn < turns.size() && turns[turn].next <= end; ++turn) {
+      late.turns.push_back({late.displacement.size(), turns[turn].displacement});
     }
   };
   for (const double read : record.time) {
@@ -51,11 +49,9 @@ MovedPath MoveLate(const ScaledRecord& record, double lag) {
     const double duration = time[next] - time[next - 1];
     // Two samples may have the same time: the later one counts.
     const double fraction = duration > 0 ? (at - time[next - 1]) / duration : 1.0;
-    late.samples.push_back(late.displacement.size());
     late.displacement.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));
   }
   turn_before(motion.size());
-  late.displacement.push_back(x.back());
   return late;
 }
 
@@ -68,10 +64,13 @@ MovedPath MoveBehindGap(const ScaledRecord& record, double gap, double side,
   const std::span<const double> x = record.displacement;
   const double half = gap / 2;
   const std::vector<Stroke> strokes = StrokesOf(x, record.reversals);
+  const std::vector<models::Turn> turns = TurnsOf(record);
   std::vector<double> ends;
-  for (const auto& [begin, end, direction] : strokes) {
-    const double closed = record.force[end] == 0 ? direction : record.force[end];
-    ends.push_back(x[end] - std::copysign(1.0, closed) * half);
+  for (std::size_t s = 0; s < strokes.size(); ++s) {
+    const std::size_t end = strokes[s].end;
+    const double closed = record.force[end] == 0 ? strokes[s].direction : record.force[end];
+    const double at = s < turns.size() ? turns[s].displacement : x[end];
+    ends.push_back(at - std::copysign(1.0, closed) * half);
   }
   double from = 0.0;
   if (initial.state == models::InitialState::kVirgin) {
@@ -87,19 +86,21 @@ MovedPath MoveBehindGap(const ScaledRecord& record, double gap, double side,
     }
   }
   MovedPath moved;
-  moved.displacement.resize(record.size());
-  moved.reversals = record.reversals;
-  moved.samples.resize(record.size());
-  std::iota(moved.samples.begin(), moved.samples.end(), std::size_t{0});
+  moved.displacement.reserve(record.size());
   for (std::size_t s = 0; s < strokes.size(); ++s) {
-    const auto& [begin, end, direction] = strokes[s];
     // The contact does not move in a stroke that is shorter than the gap.
-    const double to = direction * (ends[s] - from) >= 0 ? ends[s] : from;
+    const double to = strokes[s].direction * (ends[s] - from) >= 0 ? ends[s] : from;
     const auto [low, high] = std::minmax(from, to);
-    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) {
-      moved.displacement[i] = std::clamp(x[i] - side * half, low, high);
+    const bool is_last = s == turns.size();
+    const std::size_t end = is_last ? record.size() : turns[s].next;
+    for (std::size_t i = moved.displacement.size(); i < end; ++i) {
+      moved.displacement.push_back(std::clamp(x[i] - side * half, low, high));
     }
-    moved.displacement[end] = to;
+    if (is_last) {
+      moved.displacement.back() = to;
+    } else {
+      moved.turns.push_back({end, to});
+    }
     from = to;
   }
   return moved;
@@ -151,7 +152,7 @@ Motion Move(const ScaledRecord& record, ContactMotion motion, double amount, mod
     }
   }
   for (MovedPath& path : moved.paths) {
-    models::MakeLoadingPath(path.displacement, path.reversals, memory, initial, path.path);
+    models::MakeLoadingPath(path.displacement, path.turns, memory, initial, path.path);
   }
   return moved;
 }

@@ -26,9 +26,8 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
 
 /// The displacements of a contact that is moved off its record.
 struct MovedPath {
-  std::vector<double> displacement;
-  std::vector<std::size_t> reversals;
-  std::vector<std::size_t> samples;  // where each is among the displacements
+  std::vector<double> displacement;  // of every sample
+  std::vector<models::Turn> turns;
   models::LoadingPath path;
 };
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "identification/problem/turning_points.h"
 #include "mindahl/core/interruption.h"
 #include "mindahl/models/joint_friction.h"
 
@@ -90,6 +91,7 @@ void Response::Bind(const Problem& problem) {
   problem_ = &problem;
   const std::size_t records = problem.data->records.size();
   paths_.assign(records, {});
+  for (std::size_t r = 0; r < records; ++r) paths_[r].turns = TurnsOf(problem.data->records[r]);
   if (problem.data->load_varies) histories_.resize(records);
   for (std::size_t r = 0; r < records; ++r) {
     const ScaledRecord& record = problem.data->records[r];
@@ -133,7 +135,7 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
 
 std::vector<const MovedPath*> Response::BearingPaths(const Motion& motion,
                                                      const models::NormalizedLaw& law) {
-  std::vector<const MovedPath*> bearing(motion.paths.front().samples.size());
+  std::vector<const MovedPath*> bearing(motion.paths.front().displacement.size());
   if (motion.paths.size() == 1) {
     std::ranges::fill(bearing, &motion.paths.front());
     return bearing;
@@ -154,9 +156,8 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
   const models::InitialContact initial = InitialOf(r, theta);
   if (cached.unloaded != initial.unloaded_displacement ||
       cached.path.asymmetry != initial.asymmetry) {
-    const ScaledRecord& record = problem_->data->records[r];
-    models::MakeLoadingPath(record.excitation(), record.reversals, problem_->model->memory, initial,
-                            cached.path);
+    models::MakeLoadingPath(problem_->data->records[r].excitation(), cached.turns,
+                            problem_->model->memory, initial, cached.path);
     cached.unloaded = initial.unloaded_displacement;
   }
   return cached.path;
@@ -202,24 +203,24 @@ void Response::DifferentiateMoved(std::span<const double> theta, std::size_t r, 
   const Motion& motion = MotionOf(r, theta);
   const std::vector<const MovedPath*> bearing = BearingPaths(motion, law);
   for (const MovedPath& side : motion.paths) {
-    const std::size_t places = side.displacement.size();
-    std::vector<double> storage((1 + kOfPath.size()) * places);
-    const std::span<double> forces = std::span(storage).first(places);
-    ResponseColumns at_places;
+    const std::size_t size = t.size();
+    std::vector<double> storage((1 + kOfPath.size()) * size);
+    const std::span<double> forces = std::span(storage).first(size);
+    ResponseColumns of_side;
     for (std::size_t k = 0; k < kOfPath.size(); ++k) {
       if (columns[kOfPath[k]].empty()) continue;
-      at_places[kOfPath[k]] = std::span(storage).subspan((1 + k) * places, places);
+      of_side[kOfPath[k]] = std::span(storage).subspan((1 + k) * size, size);
     }
     response_.Evaluate(*problem_->model, law, side.path, side.displacement, forces,
-                       GradientOf(at_places));
+                       GradientOf(of_side));
     const auto take = [&](std::span<const double> from, std::span<double> to) {
       for (std::size_t i = 0; i < to.size(); ++i) {
-        if (bearing[i] == &side) to[i] = from[side.samples[i]];
+        if (bearing[i] == &side) to[i] = from[i];
         if (bearing[i] == nullptr) to[i] = 0.0;  // the gap is being crossed
       }
     };
     take(forces, t);
-    for (const TermId id : kOfPath) take(at_places[id], columns[id]);
+    for (const TermId id : kOfPath) take(of_side[id], columns[id]);
   }
   const std::span<double> by_amount = columns[problem_->parameters[moves_].term->id];
   if (by_amount.empty()) return;

@@ -97,6 +97,7 @@ class Response {
   [[nodiscard]] bool Has(TermId id) const { return !problem_->parameters[RowOf(id)].absent; }
 
   struct CachedPath {
+    std::vector<models::Turn> turns;  // of the motion
     models::LoadingPath path;
     std::optional<double> unloaded;  // empty until the path is made
   };

@@ -277,6 +277,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::size_t size = prepared.size();
     ScaledRecord& target = scaled.records.emplace_back();
     target.imposed = records.excitation;
+    target.is_smoothed = prepared.displacement_noise > 0;
     target.reversals = prepared.reversals;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();

@@ -30,6 +30,8 @@ struct ScaledRecord {
   std::vector<std::vector<double>> covariates;
   /// The channel that is imposed, of those two; the other one answers, and is fitted.
   loop::Channel imposed = loop::Channel::kDisplacement;
+  bool is_smoothed = false;    // does the displacement have noise, which was smoothed?
+  bool turns_between = false;  // does the motion turn between samples, or at the outermost ones?
   std::vector<std::size_t> reversals;  // samples
   /// The record that this one has some samples of, of whose motion a lag is; else null.
   const ScaledRecord* whole = nullptr;
