@@ -140,12 +140,6 @@ class OptionGroup {
 
 inline constexpr const char* kPlainGroup = "Options";
 
-/// Reads a number > 0, "0.01", or the same in percent, "1%"; empty where the text is neither.
-std::optional<double> ParseShare(std::string_view text);
-
-/// Adds --tolerance, "0.01" or "1%", by default 1 %.
-void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
-
 /// Adds --path, a file with an imposed displacement, and --displacement, its column.
 /// @returns the former
 CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column);

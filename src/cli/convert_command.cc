@@ -181,8 +181,11 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   result
       .AddWord("--to", options->to, NamesOf(convert::Targets(), &TargetRow::name), "law or program")
       ->required();
-  AddTolerance(result, options->options.tolerance,
-               "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%");
+  result
+      .AddQuantity("--tolerance", options->options.tolerance,
+                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
+                   "E", "-")
+      ->capture_default_str();
   result.AddCount("--elements", options->options.elements, "number of elements of --to iwan", 1,
                   10'000);
   result.AddQuantity("--normal-load", options->options.normal_load,

@@ -1,7 +1,5 @@
 #include <fmt/ranges.h>
 
-#include <cmath>
-
 #include "cli/command.h"
 #include "core/refuse.h"
 #include "core/text.h"
@@ -49,24 +47,6 @@ CLI::Option* OptionGroup::Grouped(CLI::Option* added, const std::string& type) c
   added->group(name_);
   if (!type.empty()) added->type_name(type);
   return added;
-}
-
-std::optional<double> ParseShare(std::string_view text) {
-  const bool is_percent = text.ends_with('%');
-  if (is_percent) text.remove_suffix(1);
-  const std::optional<double> number = NumberIn<double>(text);
-  if (!number || !(*number > 0) || !std::isfinite(*number)) return std::nullopt;
-  return is_percent ? *number / 100 : *number;
-}
-
-void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help) {
-  const auto read = [](std::string& text) -> std::string {
-    const std::optional<double> share = ParseShare(text);
-    if (!share) return fmt::format("'{}' is invalid: must be a number > 0, as 0.01 or 1%", text);
-    text = fmt::format("{}", *share);
-    return {};
-  };
-  group.AddShown("--tolerance", tolerance, help, "E")->transform(CLI::Validator(read, ""));
 }
 
 CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "cli/command.h"
+#include "mindahl/core/units.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/io/plot.h"
@@ -90,8 +91,8 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   WantedPrecision wanted;
   for (const std::string& text : texts) {
     const std::size_t equals = std::min(text.find('='), text.size() - 1);
-    const auto precision = ParseShare(std::string_view(text).substr(equals + 1));
-    if (!precision) {
+    const auto precision = ParseQuantity(std::string_view(text).substr(equals + 1), "-");
+    if (!precision || !(*precision > 0)) {
       Refuse(
           "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
           "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",

@@ -165,8 +165,11 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   AddLawParameters(OptionGroup(command, "Parameters"), options->law);
   const OptionGroup group(command, "Excitation");
   AddPath(group, options->path, options->column);
-  AddTolerance(group, options->tolerance,
-               "largest error allowed, of the peak force and of the energy: 0.01 or\n1%");
+  group
+      .AddQuantity("--tolerance", options->tolerance,
+                   "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E",
+                   "-")
+      ->capture_default_str();
   const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");

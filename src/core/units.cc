@@ -181,6 +181,7 @@ std::optional<double> ParseQuantity(std::string_view text, std::string_view unit
   const std::optional<double> value = NumberIn<double>(text.substr(0, end));
   const std::string_view symbol = Trimmed(text.substr(end));
   if (!value || symbol.empty()) return value;
+  if (symbol == "%" && unit == "-") return *value / 100;
   const std::size_t slash = symbol.find('/');
   const std::size_t base_slash = unit.find('/');
   if (base_slash == std::string_view::npos) return InBaseOf(*value, symbol, unit);

@@ -323,10 +323,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
         "an angle: leave them out");
   }
   RequireLoops(inputs);
-  std::vector<std::string> files;
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
-    files.push_back(input.name);
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   }
   std::vector<report::LeftOut> left_out;
@@ -335,14 +333,9 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  TermSelection asked;
   std::vector<identification::ModelScore> compared;
-  try {
-    if (request.compare) compared = identification::CompareModels(records, options);
-    asked = FitAsked(request, options, records);
-  } catch (const identification::TooFewSamples& error) {
-    Refuse("{}: {}", fmt::join(files, ", "), error.what());
-  }
+  if (request.compare) compared = identification::CompareModels(records, options);
+  TermSelection asked = FitAsked(request, options, records);
   std::optional<report::NextStep> next;
   FitResult found;
   if (!request.chooses_terms) {

@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"fit": 1, "simulate": 1, "tradeoff": 1, "convert": 1,
+WIDE_LINES_LEFT = {"fit": 1, "simulate": 1, "tradeoff": 1,
                    "track": 1, "batch": 1}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.

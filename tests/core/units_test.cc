@@ -71,6 +71,7 @@ TEST(ParseQuantity, TakesANumberOrAUnitOfItsKind) {
   EXPECT_EQ(ParseQuantity(" 50 N ", "N"), 50.0);
   EXPECT_EQ(ParseQuantity("+2.1e11", "Pa"), 2.1e11);
   EXPECT_EQ(ParseQuantity("0.3", "-"), 0.3);
+  EXPECT_EQ(ParseQuantity("30%", "-"), 0.3);
   EXPECT_DOUBLE_EQ(*ParseQuantity("48 N/um", "N/m"), 48e6);
   EXPECT_DOUBLE_EQ(*ParseQuantity("4.2e-2 1/GPa", "1/Pa"), 4.2e-11);
   EXPECT_EQ(ParseQuantity("3 N s/m", "N s/m"), 3.0);

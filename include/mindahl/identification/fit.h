@@ -11,13 +11,6 @@
 
 namespace mindahl::identification {
 
-/// Thrown if fewer samples count than there are free parameters. The message has both numbers, and
-/// how many samples were left out.
-class TooFewSamples : public InvalidArgument {
- public:
-  using InvalidArgument::InvalidArgument;
-};
-
 /// Least-squares fits of records with the same options, one after the other.
 ///
 /// A fit is of one contact: σ, α and Tc (and what else has Scope::kContact) are shared by its

@@ -77,7 +77,7 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
   const std::string without = left_out == 0 ? ""
                                             : fmt::format("; of {} that were read {} are left out",
                                                           prepared.samples(), left_out);
-  throw TooFewSamples(
+  throw InvalidArgument(
       fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
                   counted, free, without));
 }

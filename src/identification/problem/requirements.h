@@ -4,8 +4,8 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/preparation.h"
 
-/// Checks what options and records must satisfy to be fitted. Each throws InvalidArgument, or
-/// TooFewSamples, naming the parameter, its value and the rule.
+/// Checks what options and records must satisfy to be fitted. Each throws InvalidArgument naming
+/// the parameter, its value and the rule.
 namespace mindahl::identification {
 
 /// Refuses initial states that are neither none nor one a record, loads that differ or vary in a
