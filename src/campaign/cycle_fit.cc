@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -27,18 +26,6 @@ using identification::Depth;
 using identification::FitOptions;
 using identification::FitResult;
 using identification::ParameterEstimate;
-
-constexpr std::array kFlags = {
-    CycleFlag{"not_converged", "the fit failed or did not converge; its values are not to be used"},
-    CycleFlag{"sigma_open", "the cycle does not determine sigma"},
-    CycleFlag{"alpha_open", "the cycle does not determine alpha"},
-    CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
-    CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
-    CycleFlag{"rows_missing",
-              "time jumps by a quarter of a cycle or more: what turned there is not seen"},
-    CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
-    CycleFlag{"glitches", "spikes or dropouts were left out"},
-};
 
 FitOptions OfSteadyCycles(FitOptions options) {
   if (options.initial_states.empty()) options.initial_states = {models::InitialState::kSteady};
@@ -85,8 +72,6 @@ void FillParameter(const FitResult& result, const std::string& name, CycleFit& f
 }
 
 }  // namespace
-
-std::span<const CycleFlag> CycleFlags() { return kFlags; }
 
 CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
@@ -141,13 +126,6 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
 
 namespace {
 
-// A torque about the contact has no contact radius, the last of them.
-static_assert(kCycleNumbers.back().name == "contact_radius");
-
-std::size_t CountOfNumbers(bool is_torsional) {
-  return kCycleNumbers.size() - (is_torsional ? 1 : 0);
-}
-
 constexpr std::string_view kPartial = "partial";
 constexpr std::string_view kGross = "gross";
 
@@ -159,21 +137,17 @@ Value CellValue(std::string_view cell) {
 
 }  // namespace
 
-std::string CycleTableHeader(bool is_torsional) {
-  const report::Units& units = report::UnitsOf(is_torsional);
+std::string CycleTableHeader() {
   std::string header = "cycle,first_line,samples";
-  for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
-    header += fmt::format(",{}", column.name);
-    if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
-  }
+  for (const auto& [name, unit] : kCycleNumbers) header += ',' + report::WithUnit(name, unit);
   return header + ",slip_regime,accumulated_energy [J],flags\n";
 }
 
-std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   fmt::memory_buffer row;
   const auto end = std::back_inserter(row);
   fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
-  for (const auto& number : std::span(fit.numbers).first(CountOfNumbers(is_torsional))) {
+  for (const auto& number : fit.numbers) {
     row.push_back(',');
     if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
@@ -182,24 +156,23 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
   return fmt::to_string(row);
 }
 
-CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
+CycleFit ReadCycleTableRow(std::string_view line) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
-  const std::size_t numbers = CountOfNumbers(is_torsional);
   // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags.
-  const std::size_t columns = 3 + numbers + 3;
-  if (cells.size() != columns) {
-    throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
+  constexpr std::size_t kColumns = 3 + kCycleNumbers.size() + 3;
+  if (cells.size() != kColumns) {
+    throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
   }
   CycleFit fit;
   fit.number = CellValue<std::size_t>(cells[0]);
   fit.first_line = CellValue<std::size_t>(cells[1]);
   fit.samples = CellValue<std::size_t>(cells[2]);
-  for (std::size_t k = 0; k < numbers; ++k) {
+  for (std::size_t k = 0; k < kCycleNumbers.size(); ++k) {
     if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
-  const std::string_view regime = cells[columns - 3];
+  const std::string_view regime = cells[kColumns - 3];
   if (!regime.empty()) fit.slips_grossly = regime == kGross;
-  if (const std::string_view flags = cells[columns - 1]; !flags.empty()) {
+  if (const std::string_view flags = cells[kColumns - 1]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
   }
   return fit;
