@@ -1,8 +1,7 @@
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <numeric>
 
 #include "cli/command.h"
+#include "core/draws.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
@@ -61,11 +60,9 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   return motion;
 }
 
-void AddNoise(std::vector<double>& values, double standard_deviation,
-              boost::random::mt19937_64& engine) {
+void AddNoise(std::vector<double>& values, double standard_deviation, Draws& draws) {
   if (standard_deviation == 0) return;
-  boost::random::normal_distribution<double> normal(0.0, standard_deviation);
-  for (double& value : values) value += normal(engine);
+  for (double& value : values) value += standard_deviation * draws.Normal();
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
@@ -80,9 +77,9 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   models::Excitation motion = MakeMotion(options, law);
   std::vector<double> force(motion.displacement.size());
   Prepare(approximation, law)({motion.displacement, motion.envelope}, force);
-  boost::random::mt19937_64 engine(options.seed);
-  AddNoise(force, options.force_noise, engine);
-  AddNoise(motion.displacement, options.displacement_noise, engine);
+  Draws draws(options.seed);
+  AddNoise(force, options.force_noise, draws);
+  AddNoise(motion.displacement, options.displacement_noise, draws);
   Say("simulate: warning",
       contact::DoubtsAbout(options.law.contact.known, options.law.contact.friction_coefficient),
       console);
