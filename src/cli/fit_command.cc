@@ -18,7 +18,6 @@ struct FitCommandOptions {
 void RunFit(const FitCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
-  Validate(request);
   const report::Report report = request::FitRecords(request, request::ReadRecords(request));
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const bool failed = report.failed();  // then there is no curve to draw, no residual to list

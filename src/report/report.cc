@@ -32,7 +32,7 @@ void TranslateToTorque(Report& report) {
     // Newtons over the unit of a column, whatever that is.
     const bool is_of_column = estimate.name.starts_with(identification::NameOfCovariate(""));
     estimate.unit = is_of_column ? std::string(report.units.force) + estimate.unit.substr(1)
-                                 : UnitIn(report.units, estimate.unit);
+                                 : UnitOfTorque(estimate.unit);
   }
 }
 

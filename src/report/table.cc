@@ -2,8 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -119,30 +119,29 @@ std::string ResidualsCsv(const Report& report) {
   RequireFitted(report, "a table of residuals");
   const Units& units = report.units;
   const bool is_of_force = report.fit.response == loop::Channel::kForce;
-  const bool is_timed = std::ranges::none_of(
-      report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
-  std::map<std::string, std::vector<double>> cells;  // by what a column holds
-  const auto append = [&](const char* what, const std::vector<double>& values) {
-    cells[what].insert(cells[what].end(), values.begin(), values.end());
-  };
+  const auto names = std::to_array<std::string>(
+      {"file", "time [s]", WithUnit("displacement", units.displacement),
+       WithUnit("force", units.force),
+       WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", units.response),
+       WithUnit("residual", units.response)});
+  std::array<std::vector<double>, names.size()> cells;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const loop::Record& record = report.records[r].record;
-    const identification::RecordFit& fit = report.fit.records[r];
-    append("file", std::vector<double>(record.size(), static_cast<double>(r + 1)));
-    append("time", record.time);
-    append("displacement", record.displacement);
-    append("force", record.force);
-    append("fitted", is_of_force ? fit.fitted_force : fit.fitted_displacement);
-    append("residual", fit.residual);
+    const RecordFit& fit = report.fit.records[r];
+    const std::vector<double> number(record.size(), static_cast<double>(r + 1));
+    auto* column = cells.begin();
+    for (const std::vector<double>* values :
+         {&number, &record.time, &record.displacement, &record.force,
+          is_of_force ? &fit.fitted_force : &fit.fitted_displacement, &fit.residual}) {
+      column->insert(column->end(), values->begin(), values->end());
+      ++column;
+    }
   }
   std::vector<io::CsvColumn> columns;
-  if (report.records.size() > 1) columns.push_back({"file", cells["file"]});
-  if (is_timed) columns.push_back({"time [s]", cells["time"]});
-  columns.push_back({WithUnit("displacement", units.displacement), cells["displacement"]});
-  columns.push_back({WithUnit("force", units.force), cells["force"]});
-  columns.push_back({WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", units.response),
-                     cells["fitted"]});
-  columns.push_back({WithUnit("residual", units.response), cells["residual"]});
+  for (std::size_t c = report.records.size() > 1 ? 0 : 1; c < names.size(); ++c) {
+    const bool is_whole = cells.at(c).size() == cells.back().size();  // a record may have no time
+    if (is_whole) columns.push_back({names.at(c), cells.at(c)});
+  }
   return io::CsvText(columns);
 }
 

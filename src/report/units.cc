@@ -126,9 +126,8 @@ std::string QuantityWithInterval(std::optional<double> value, std::optional<doub
   return fmt::format("{} ({} … {})", Joined(rounded(*value), scaled), end(lower), end(upper));
 }
 
-std::string UnitIn(const Units& units, std::string_view unit) {
+std::string UnitOfTorque(std::string_view unit) {
   std::string translated(unit);
-  if (units.force == kUnitsOfForce.force) return translated;
   for (const auto& [word, of_torque] :
        {std::pair("\\bm\\b", "rad"), {"\\bN\\b", "N m"}, {"\\bkg\\b", "kg m²"}}) {
     translated = std::regex_replace(translated, std::regex(word), of_torque);

@@ -272,11 +272,6 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
                      fmt::join(selection.added, ", "));
 }
 
-void Validate(const FitRequest& request) {
-  Validate(request.contact, request.files.size());
-  MakeFitOptions(request);
-}
-
 bool Established(const FitResult& fit, Strictness strictness) {
   if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
   const bool is_strict = strictness == Strictness::kAdequate;

@@ -52,7 +52,7 @@ TEST(QuantityWithInterval, HasTwoDigitsOfHalfTheIntervalAndSaysWhichEndIsOpen) {
   EXPECT_EQ(QuantityWithInterval(15.0, std::nullopt, std::nullopt, "N"), "15 N");
 }
 
-TEST(UnitIn, TranslatesEveryUnitOfAForceToThatOfATorque) {
+TEST(UnitOfTorque, IsThatOfAForceTranslated) {
   for (const auto& [of_force, of_torque] : {std::pair("N", "N m"),
                                             {"m", "rad"},
                                             {"N/m", "N m/rad"},
@@ -62,8 +62,7 @@ TEST(UnitIn, TranslatesEveryUnitOfAForceToThatOfATorque) {
                                             {"N samples²/m", "N m samples²/rad"},
                                             {"J", "J"},
                                             {"-", "-"}}) {
-    EXPECT_EQ(UnitIn(kUnitsOfTorque, of_force), of_torque);
-    EXPECT_EQ(UnitIn(kUnitsOfForce, of_force), of_force);
+    EXPECT_EQ(UnitOfTorque(of_force), of_torque);
   }
 }
 

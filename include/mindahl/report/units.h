@@ -29,10 +29,9 @@ inline const Units& UnitsOf(bool is_torsional) {
   return is_torsional ? kUnitsOfTorque : kUnitsOfForce;
 }
 
-/// Returns the unit in which a quantity is that has `unit` where the record has a force: of a
-/// torque N is N m, m is rad and kg is kg m², so "N/m²" is "N m/rad²". Energies are in J either
-/// way.
-std::string UnitIn(const Units& units, std::string_view unit);
+/// Returns the unit that a quantity of a torque has where that of a force has `unit`: N is N m, m
+/// is rad and kg is kg m², so "N/m²" is "N m/rad²". Energies are in J either way.
+std::string UnitOfTorque(std::string_view unit);
 
 /// A unit for reading: with the prefix that makes a number of 1 to 1000 of a magnitude.
 struct ScaledUnit {

@@ -53,9 +53,6 @@ enum class Strictness {
 /// True if a fit is established, for the exit status.
 bool Established(const identification::FitResult& fit, Strictness strictness);
 
-/// @throws InvalidArgument or InputError for options that break a rule whatever the records are
-void Validate(const FitRequest& request);
-
 /// Adds the terms that the first cycles of a test require to the options of its cycles' fits, where
 /// the request leaves them to be chosen.
 /// @param head     samples of the first cycles
