@@ -24,70 +24,30 @@ constexpr double kTimeStep = 1e-7;         // [s]
 constexpr int kSteps = 40'000;
 constexpr int kStepsPerRow = 2'000;
 
-/// Work [J] that the contact takes up, exactly: that of a branch is the work of a branch law from
-/// its reversal, since a vibration that decays never closes a loop.
-class ContactWork {
- public:
-  explicit ContactWork(const FrictionModel& model) : model_(model) {}
-
-  double To(double displacement, double force) {
-    const double direction = displacement > displacement_ ? 1.0 : -1.0;
-    if (direction_ * direction < 0) {
-      before_ = OnBranch(displacement_);
-      origin_ = displacement_;
-      origin_force_ = force_;
-      // Masing: twice the virgin curve. Dahl: with what is left of the slip force.
-      const double left = 1 - direction * force_ / kLaw.slip_force;
-      branch_ = kLaw;
-      branch_.slip_force *= model_.memory == Memory::kReturnPoint ? 2.0 : left;
-      if (model_.memory == Memory::kNone) {
-        branch_.tangential_stiffness *= std::pow(left, kLaw.shape_exponent);
-      }
-    }
-    direction_ = direction;
-    displacement_ = displacement;
-    force_ = force;
-    return OnBranch(displacement);
-  }
-
- private:
-  [[nodiscard]] double OnBranch(double displacement) const {
-    const double e = displacement - origin_;
-    return before_ + origin_force_ * e + BackboneWork(branch_, e);
-  }
-
-  const FrictionModel& model_;
-  BranchLaw branch_ = kLaw;
-  double origin_ = 0.0;
-  double origin_force_ = 0.0;
-  double before_ = 0.0;  // up to the reversal
-  double direction_ = 0.0;
-  double displacement_ = 0.0;
-  double force_ = 0.0;
-};
-
 /// Largest error of the energy balance over the initial energy.
 double Vibrate(const FrictionModel& model) {
   std::printf("%.*s\n%12s %14s %10s %12s %12s %12s %10s\n", static_cast<int>(model.title.size()),
               model.title.data(), "time [s]", "displ. [m]", "force [N]", "kinetic [J]",
               "spring [J]", "contact [J]", "sum/initial");
   ContactState contact(model, kLaw);
-  ContactWork work(model);
   const double initial_energy = kMass * kInitialVelocity * kInitialVelocity / 2;
   double displacement = 0.0;
   double velocity = kInitialVelocity;
   double acceleration = 0.0;
+  double taken_up = 0.0;  // work [J] that is lost, but for what is still stored
   double worst = 0.0;
   for (int step = 1; step <= kSteps; ++step) {  // velocity Verlet
-    displacement += kTimeStep * (velocity + kTimeStep / 2 * acceleration);
+    const double travel = kTimeStep * (velocity + kTimeStep / 2 * acceleration);
+    const double before = contact.Force();
+    displacement += travel;
     const double force = contact.Move(displacement);
+    taken_up += travel * (before + force) / 2;
     const double next = -(kSpringStiffness * displacement + force) / kMass;
     velocity += kTimeStep / 2 * (acceleration + next);
     acceleration = next;
 
     const double kinetic = kMass * velocity * velocity / 2;
     const double spring = kSpringStiffness * displacement * displacement / 2;
-    const double taken_up = work.To(displacement, force);  // lost, but for what is still stored
     const double balance = (kinetic + spring + taken_up) / initial_energy;
     worst = std::max(worst, std::abs(balance - 1));
     if (step % kStepsPerRow == 0) {

@@ -76,11 +76,6 @@ Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_expone
   return reduced;
 }
 
-long double Work(const SplitDisplacement& y, long double shape_exponent) {
-  const long double force = Shape{shape_exponent}.Force(Reduce(y, shape_exponent));
-  return (MasingLoopEnergy(y, shape_exponent) + 4 * y.high * force) / 8;
-}
-
 long double MasingLoopEnergy(const SplitDisplacement& y, long double shape_exponent) {
   if (y.high <= kSeriesLimit && std::abs((1 - shape_exponent) * y.high) <= kSeriesLimit) {
     return LoopEnergySeries(y.high, shape_exponent);

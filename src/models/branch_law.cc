@@ -5,7 +5,6 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
-#include "models/requirements.h"
 
 namespace mindahl::models {
 
@@ -47,13 +46,9 @@ namespace {
 
 using ExtendedShape = backbone::GeneralShape<long double>;
 
-void RequireNumber(double x) {
-  if (std::isnan(x)) ThrowInvalid("displacement [m]", x, "must be a number");
-}
-
 /// At infinity every law has slipped.
 backbone::Reduced<long double> ReducedAt(const BranchLaw& law, double x) {
-  RequireNumber(x);
+  if (std::isnan(x)) ThrowInvalid("displacement [m]", x, "must be a number");
   if (std::isinf(x)) return {.y = 1, .w = 1, .z = 0};
   return backbone::Reduce(backbone::Normalize(law.tangential_stiffness, x, law.slip_force),
                           law.shape_exponent);
@@ -68,19 +63,6 @@ double BackboneForce(const BranchLaw& law, double x) {
 
 double BackboneRemaining(const BranchLaw& law, double x) {
   return static_cast<double>(ExtendedShape{law.shape_exponent}.Remaining(ReducedAt(law, x)));
-}
-
-double BackboneSlope(const BranchLaw& law, double x) {
-  return static_cast<double>(law.tangential_stiffness *
-                             ExtendedShape{law.shape_exponent}.Slope(ReducedAt(law, x)));
-}
-
-double BackboneWork(const BranchLaw& law, double x) {
-  RequireFinite("displacement [m]", x);
-  const auto slip_force = static_cast<long double>(law.slip_force);
-  const auto y = backbone::Normalize(law.tangential_stiffness, x, law.slip_force);
-  return Representable("work [J]", slip_force * slip_force / law.tangential_stiffness *
-                                       backbone::Work(y, law.shape_exponent));
 }
 
 }  // namespace mindahl::models

@@ -26,7 +26,6 @@ struct Exact {
   long double force = 0;               // [N]
   long double remaining = 0;           // [-]
   long double slope = 0;               // [N/m]
-  long double work = 0;                // [J]
   long double per_log_stiffness = 0;   // [N]
   long double per_shape = 0;           // [N]
   long double per_log_slip_force = 0;  // [N]
@@ -49,7 +48,6 @@ Exact EvaluateExactly(const models::BranchLaw& law, const Real& x) {
   return {.force = rounded(exact.force * slip_force),
           .remaining = rounded(exact.remaining),
           .slope = rounded(exact.slope * stiffness),
-          .work = rounded(exact.work * energy_unit),
           .per_log_stiffness = rounded(exact.per_log_stiffness * slip_force),
           .per_shape = rounded(exact.per_shape * slip_force),
           .per_log_slip_force = rounded(exact.per_log_slip_force * slip_force),
@@ -168,14 +166,6 @@ inline std::vector<Measurement> Measurements() {
       {"BackboneRemaining", "value", 1.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(models::BackboneRemaining(law, x), exact.remaining);
-       }},
-      {"BackboneSlope", "value", 1.0,
-       [](const models::BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(models::BackboneSlope(law, x), exact.slope);
-       }},
-      {"BackboneWork", "value", 1.0,
-       [](const models::BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(models::BackboneWork(law, x), exact.work);
        }},
       {"SteadyPeakForce, Masing", "value", 6.0,
        [&masing](const models::BranchLaw& law, double x, const Exact& exact) {

@@ -115,7 +115,11 @@ void AddEnergyChecks(std::vector<Check>& checks) {
   const Excitation sine = Sine(kMicroSlip, 5);
   const double amplitude = sine.envelope.front();
   const double loop = AreaOfLastCycle(sine, MindlinForce(sine));
-  const double work = models::BackboneWork(ExactLaw(), amplitude);
+  // ∫T dδ of eq. 13
+  const double gross_slip = contact::GrossSlipDisplacement(kContact);
+  const double work =
+      kContact.slip_force *
+      (amplitude - 0.4 * gross_slip * (1 - std::pow(1 - amplitude / gross_slip, 2.5)));
   const double dissipated = 2 * work - amplitude * contact::MindlinVirginForce(kContact, amplitude);
   checks.push_back(Check::Within("§2.3: 4 × dissipated part of the initial loading over loop area",
                                  1.0, kTrapezoids, 4 * dissipated / loop));

@@ -362,10 +362,6 @@ SplitDisplacement Normalize(double stiffness, double x, double slip_force);
 /// Reduces y with z to full relative precision.
 Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_exponent);
 
-/// Returns ∫₀^y φ ds = y − (1 − u^{2−α})/(2−α), by the energy of the loop, which is 0 or more; →
-/// y²/2 as y → 0. Relative error below 2⁻⁵⁵ (64-bit long double).
-long double Work(const SplitDisplacement& y, long double shape_exponent);
-
 /// Returns the energy lost in a closed Masing loop of amplitude y over Tc²/σ, 8∫₀^y φ ds − 4yφ(y).
 /// → (2/3)·α·y³ as y → 0, where both terms cancel: there by the series
 ///   φ = −Σ (−y)ᵏ pₖ,  pₖ = Π_{j<k}(1 − jβ)/k!,   loop = Σ_{k>=2} (−1)ᵏ pₖ (4 − 8/(k+1)) y^{k+1}.

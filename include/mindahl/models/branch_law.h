@@ -31,7 +31,7 @@ double GrossSlipDisplacement(const BranchLaw& law);
 // They work in long double, with y = σx/Tc in two parts, and round once. Where long double has 64
 // bits or more their relative error is below 1 ε = 2.2e-16 for every α and x, also next to slip;
 // what underflows is right to half the smallest denormal. With a 53-bit long double the errors of f
-// stay below 4 ε, those near slip and of the work grow (docs/accuracy.md).
+// stay below 4 ε, those near slip grow (docs/accuracy.md).
 
 /// Returns f(x) [N], odd in x [m]; ±Tc at and beyond gross slip.
 double BackboneForce(const BranchLaw& law, double x);
@@ -40,12 +40,5 @@ double BackboneForce(const BranchLaw& law, double x);
 /// x, exactly 0 at and beyond gross slip. The stick radius of a Mindlin contact is c/a = u^{1/3}
 /// (Peyret eq. 5).
 double BackboneRemaining(const BranchLaw& law, double x);
-
-/// Returns f'(x) [N/m] = σ·u^α, even in x; 0 beyond gross slip.
-double BackboneSlope(const BranchLaw& law, double x);
-
-/// Returns ∫₀^|x| f dx [J] = Tc·x − Tc²·(1 − u^{2−α})/(σ(2−α)), by its series where these cancel.
-/// @throws InvalidArgument also for an infinite x and where the work exceeds the largest double
-double BackboneWork(const BranchLaw& law, double x);
 
 }  // namespace mindahl::models
