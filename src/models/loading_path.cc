@@ -17,12 +17,6 @@ void RequireDisplacements(std::span<const double> displacement) {
   if (displacement.empty()) {
     throw InvalidArgument("the displacement history is empty: must have samples");
   }
-  // Branches are numbered in 32 bits, and a sample opens at most one.
-  constexpr std::size_t kMostSamples = 2'147'483'640;
-  if (displacement.size() > kMostSamples) {
-    ThrowInvalid("samples of the displacement history [-]",
-                 static_cast<double>(displacement.size()), "must be <= 2147483640");
-  }
   if (AreAllWithin(displacement, kLargestPathDisplacement)) return;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);

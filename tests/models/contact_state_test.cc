@@ -209,25 +209,6 @@ TEST(ContactState, RemembersAsManyExtremesAsTheLoopIsDeepNotAsItIsLong) {
   EXPECT_LE(most, 4U);
 }
 
-TEST(ContactState, AllocatesNothingWithinItsReserve) {
-  ContactState contact(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0});
-  ContactState trial = contact;
-  ContactState dahl(Model("dahl"), {1.0, 1.0 / 3.0, 1.0});
-  contact.Reserve(50);
-  trial.Reserve(50);
-  const History history = Spiral(50);
-  const std::size_t before = allocations;
-  for (const double displacement : history) {
-    static_cast<void>(contact.Peek(-displacement));
-    trial = contact;
-    trial.Move(0.1 * displacement);
-    contact.Move(displacement);
-    dahl.Move(displacement);
-  }
-  contact.Reset();
-  EXPECT_EQ(allocations, before);
-}
-
 // --- Refusals ------------------------------------------------------------------------------------
 
 TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {

@@ -80,12 +80,8 @@ class ContactState {
   /// would make. Cost: as of Move.
   [[nodiscard]] double TangentStiffness() const;
 
-  /// Returns to the virgin contact at δ₀; keeps the memory that was reserved.
+  /// Returns to the virgin contact at δ₀.
   void Reset();
-
-  /// Makes room for so many remembered extremes, after which Move allocates nothing before they are
-  /// more.
-  void Reserve(std::size_t extremes) { suspended_.reserve(extremes); }
 
   /// Extremes that are remembered: the depth of nesting.
   [[nodiscard]] std::size_t RememberedExtremes() const { return suspended_.size(); }

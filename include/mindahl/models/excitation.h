@@ -18,9 +18,9 @@ std::optional<Waveform> FindWaveform(std::string_view name);
 
 struct ExcitationOptions {
   Waveform waveform = Waveform::kSine;
-  double amplitude = 0.0;  ///< [m], > 0, <= 1e100; the largest, of a growing sine at its end
-  double cycles = 1.0;     ///< finite, > 0, multiples of 1/samples_per_cycle
-  std::size_t samples_per_cycle = 200;  ///< 4 to 1e9; a multiple of 4 puts samples on the extremes
+  double amplitude = 0.0;               ///< [m], > 0; the largest, of a growing sine at its end
+  double cycles = 1.0;                  ///< finite, > 0, multiples of 1/samples_per_cycle
+  std::size_t samples_per_cycle = 200;  ///< >= 4; a multiple of 4 puts samples on the extremes
   double frequency = 1.0;               ///< [Hz], finite, > 0
   double growth = 10.0;  ///< last over first envelope of a growing sine, finite, >= 1
 };
@@ -40,7 +40,7 @@ struct Excitation {
 /// The envelope is A·g^{t/t_end − 1} of the growing sine, and A of the others.
 ///
 /// The sine is exact at its zeros and extremes and repeats bit for bit.
-/// @throws InvalidArgument for values out of range, more than 1e9 samples or longer than 1e300 s
+/// @throws InvalidArgument for values out of range or more than 1e9 samples
 /// Error below 4 ε = 9e-16 of the amplitude; of a growing sine 4 ε·(1 + ln g).
 Excitation MakeExcitation(const ExcitationOptions& options);
 

@@ -114,8 +114,7 @@ struct InitialContact {
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
 ///                      step back within the gate
 /// @throws InvalidArgument when a displacement is not finite or beyond ±1e100 m, when the record is
-///   empty or has more than 2147483640 samples, for an asymmetry beyond (−1, 1) or of a law without
-///   memory
+///   empty, for an asymmetry beyond (−1, 1) or of a law without memory
 /// Cost: linear in the samples, however deep the nesting; 36 bytes a reversal, and 4 more an
 /// extremum that is remembered.
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
