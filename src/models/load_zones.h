@@ -7,10 +7,44 @@
 #include <vector>
 
 #include "mindahl/models/backbone.h"
-#include "mindahl/models/variable_load.h"
 #include "models/response_gradient.h"
 
 namespace mindahl::models {
+
+// Friction under a normal load N that varies along the path, as docs/theory.md §11 derives it:
+// elements in parallel, of which element h is in contact while δc(N) > h, sticks elastically, and
+// slips at |δ − r| = δc(N) − h, with r the displacement at which it carries nothing.
+
+/// Elements from `inner` outward, to the next zone or the rim, whose rest positions lie on the
+/// line r(h) = intercept + slope·h. Real is double, or has derivatives.
+template <typename Real>
+struct LoadZone {
+  Real inner{};       ///< h₁ [m]
+  Real slope{};       ///< r' [–], within ±1; ±1 where the last slip was in that direction
+  Real intercept{};   ///< r(0) [m], of the line
+  Real force{};       ///< Σ r'·ΔTc [N] over the zones within
+  Real slip_force{};  ///< Tc(h₁) [N]
+
+  [[nodiscard]] Real RestAt(const Real& h) const { return intercept + slope * h; }
+};
+
+/// The rim of the contact under a load.
+template <typename Real>
+struct LoadRim {
+  Real slip_displacement{};  ///< δc(N) [m], of the outermost elements
+  Real slip_force{};         ///< Tc(N) [N]
+};
+
+/// A contact under a load that is moved from step to step.
+template <typename Real>
+struct ZonedContact {
+  /// Cover 0 <= h < δc, innermost first; the elements at the rim carry nothing, so that δ need not
+  /// be kept with them.
+  std::vector<LoadZone<Real>> zones;
+  LoadRim<Real> rim{};
+  double displacement = 0.0;  ///< δ [m]
+  Real force{};               ///< T [N]
+};
 
 /// A number with its derivatives by the first three of ResponseParameter, ln κ, α and δ₀, for
 /// arithmetic that takes them along.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/variable_load.h"
 #include "models/load_zones.h"
 #include "models/normalized_response.h"
 
@@ -36,8 +35,8 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
                        std::span<const std::size_t> reversals, InitialState state,
                        LoadedHistory& history);
 
-/// EvaluateForceUnderLoad over μN₀ and its gradient, for solvers: σ_ref is that under N₀, and
-/// t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
+/// The force under a varying load (load_zones.h) over μN₀ and its gradient, for solvers: σ_ref is
+/// that under N₀, and t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
 class NormalizedLoadedResponse {
  public:
   /// @param law       α < 1; no spring in series, behind which the contact's own displacement would

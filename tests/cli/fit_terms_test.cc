@@ -1,6 +1,6 @@
 #include "cli/command_line.h"
-#include "mindahl/models/variable_load.h"
 #include "support/imposed_force.h"
+#include "support/variable_load.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
@@ -188,9 +188,9 @@ class LoadStepsOfFit : public CommandTest {
   /// Fifteen cycles: the exact response of elements in parallel, so that the contact keeps what it
   /// has of each load.
   std::string Series() {
-    models::LoadedContactState contact(
+    testing::LoadedContact contact(
         {.friction_coefficient = kFriction, .reference_load = 50, .reference_stiffness = 4e7},
-        {.normal_load = Staircase(0)});
+        Staircase(0));
     std::string rows = "displacement [m],force [N],normal load [N]\n";
     for (std::size_t i = 0; i <= 15 * kCycle; ++i) {
       const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);

@@ -3,9 +3,9 @@
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/steady_loop.h"
-#include "mindahl/models/variable_load.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
+#include "support/variable_load.h"
 
 namespace mindahl::identification::load_series_test {
 namespace {

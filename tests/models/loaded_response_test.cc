@@ -1,8 +1,8 @@
 #include "models/loaded_response.h"
 
 #include "../support/histories.h"
-#include "mindahl/models/variable_load.h"
 #include "support/prelude.h"
+#include "support/variable_load.h"
 
 namespace mindahl::models::loaded_response_test {
 namespace {
@@ -53,7 +53,7 @@ History Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double 
 }
 
 TEST(NormalizedLoadedResponse, IsTheForceUnderLoadOverTheSlipForce) {
-  // 8 ε·(σ·max|δ| + Tc/(1−α)) each, variable_load.h, and as much of powers by way of logarithms;
+  // 8 ε·(σ·max|δ| + Tc/(1−α)) each, and as much of powers by way of logarithms;
   // σ·max|δ| <= 5, loads <= 3, 1/(1−α) <= 20 here.
   constexpr double kRounding = 2 * 8 * 2.3e-16 * (5 * 3 + 3 * 20);
   Generator generator(3);

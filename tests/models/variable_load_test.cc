@@ -1,4 +1,4 @@
-#include "mindahl/models/variable_load.h"
+#include "../support/variable_load.h"
 
 #include <cfenv>
 
@@ -39,7 +39,7 @@ History Respond(const LoadDependentLaw& law, const LoadedHistory& path) {
   return force;
 }
 
-/// The bound of variable_load.h.
+/// Error of a zoned contact, by the largest σ and Tc of the path.
 double RoundingBound(const LoadDependentLaw& law, const LoadedHistory& path) {
   const double load = Largest(path.normal_load);
   if (load == 0) return 0.0;
@@ -302,80 +302,16 @@ TEST(VariableLoad, KeepsEveryDigitOfASmallVirginDisplacement) {
   }
 }
 
-std::string RefusalOf(const LoadDependentLaw& law, const LoadedHistory& path) {
-  return MessageOf([&] { Respond(law, path); });
-}
-
-TEST(VariableLoad, RefusesASampleByItsNumber) {
-  // LoadedContactState::Move() refuses it in the same way.
-  const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
-  EXPECT_EQ(RefusalOf(law, {{0.0, 1.0}, {1.0, -2.0}}),
-            "sample 1: normal load [N] = -2 is invalid: must be finite and >= 0");
-  EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {kNan, 1.0}}), HasSubstr("sample 0: normal load [N]"));
-  EXPECT_THAT(RefusalOf(law, {{0.0, kNan}, {1.0, 1.0}}), HasSubstr("sample 1: displacement [m]"));
-}
-
-TEST(VariableLoad, RefusesALawByItsParameter) {
-  const auto refusal = [](double LoadDependentLaw::*parameter, double number) {
-    LoadDependentLaw law = UnitLaw(0.5);
-    law.*parameter = number;
-    return RefusalOf(law, {{0.0}, {1.0}});
-  };
-  EXPECT_THAT(refusal(&LoadDependentLaw::friction_coefficient, 0.0), HasSubstr("friction coeff"));
-  EXPECT_THAT(refusal(&LoadDependentLaw::reference_load, -1.0), HasSubstr("reference load [N]"));
-  EXPECT_THAT(refusal(&LoadDependentLaw::reference_stiffness, 0.0),
-              HasSubstr("reference stiffness [N/m]"));
-  EXPECT_THAT(refusal(&LoadDependentLaw::shape_exponent, 1.0),
-              HasSubstr("shape exponent [-] = 1 is invalid: must be < 1"));
-  EXPECT_THAT(refusal(&LoadDependentLaw::shape_exponent, -0.1), HasSubstr("shape exponent [-]"));
-  History two(2);
-  EXPECT_THROW(EvaluateForceUnderLoad(UnitLaw(0.5), {{0.0, 1.0}}, {{1.0}}, two), InvalidArgument);
-  EXPECT_THROW(EvaluateForceUnderLoad(UnitLaw(0.5), {{0.0}}, {{1.0}}, two), InvalidArgument);
-}
-
-// --- Step by step
-// ---------------------------------------------------------------------------------
-
-TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
-  // Bit for bit.
-  Generator generator(1);
-  for (const double alpha : kShapeExponents) {
-    for (int i = 0; i < 1000; ++i) {
-      const LoadedHistory path = RandomLoadedHistory(generator, /*lift_off=*/true);
-      const auto& [displacement, load] = path;
-      const History expected = Respond(UnitLaw(alpha), path);
-      LoadedContactState contact(UnitLaw(alpha), {.normal_load = load.front()});
-      for (std::size_t k = 0; k < displacement.size(); ++k) {
-        ASSERT_EQ(contact.Move(displacement[k], load[k]), expected[k]) << alpha << ' ' << i;
-        ASSERT_EQ(contact.Force(), expected[k]);
-        ASSERT_EQ(contact.Displacement(), displacement[k]);
-        ASSERT_EQ(contact.NormalLoad(), load[k]);
-      }
-    }
-  }
-}
-
-TEST(LoadedContactState, ACopyGoesItsOwnWay) {
-  const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
-  LoadedContactState contact(law, {.normal_load = 2.0, .unloaded_displacement = 0.25});
-  const double first = contact.Move(0.75, 3.0);
-  LoadedContactState trial = contact;
-  const double trial_force = trial.Move(-1.0, 1.0);
-  EXPECT_EQ(contact.Force(), first);
-  trial = contact;
-  EXPECT_EQ(trial.Move(-1.0, 1.0), trial_force);
-}
-
-TEST(LoadedContactState, RemembersAsManyZonesAsTheLoopIsDeepNotAsItIsLong) {
+TEST(LoadedContact, RemembersAsManyZonesAsTheLoopIsDeepNotAsItIsLong) {
   constexpr std::size_t kSteps = 1'000'000;
   constexpr std::size_t kPerCycle = 200;
-  LoadedContactState contact(UnitLaw(1.0 / 3.0), {.normal_load = 2.0});
+  LoadedContact contact(UnitLaw(1.0 / 3.0), 2.0);
   std::vector<double> second_cycle(kPerCycle);
   std::size_t most = 0;
   for (std::size_t i = 0; i < kSteps; ++i) {
     const double phase = 2 * 3.141592653589793 * static_cast<double>(i % kPerCycle) / kPerCycle;
     const double force = contact.Move(1.2 * std::sin(phase), 2.0);
-    most = std::max(most, contact.RememberedZones());
+    most = std::max(most, contact.zones());
     if (i / kPerCycle == 1) second_cycle[i % kPerCycle] = force;
     if (i / kPerCycle > 1) {
       ASSERT_EQ(force, second_cycle[i % kPerCycle]) << i;
@@ -384,42 +320,12 @@ TEST(LoadedContactState, RemembersAsManyZonesAsTheLoopIsDeepNotAsItIsLong) {
   EXPECT_LE(most, 3U);
 }
 
-TEST(LoadedContactState, AddsOneZoneForALoadThatRisesAtRest) {
-  LoadedContactState contact(UnitLaw(1.0 / 3.0));
+TEST(LoadedContact, AddsOneZoneForALoadThatRisesAtRest) {
+  LoadedContact contact(UnitLaw(1.0 / 3.0), 0.0);
   contact.Move(0.5, 1.0);
-  const std::size_t zones = contact.RememberedZones();
+  const std::size_t zones = contact.zones();
   for (int i = 1; i < 1000; ++i) contact.Move(0.5, 1.0 + 0.01 * i);
-  EXPECT_LE(contact.RememberedZones(), zones + 1);
-}
-
-TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
-  LoadDependentLaw soft = UnitLaw(1.0 / 3.0);
-  soft.reference_stiffness = 1e-99;
-  LoadedContactState contact(soft, {.normal_load = 1.0});
-  contact.Move(0.5, 1.0);
-  const double force = contact.Force();
-  const auto refusal = [&](double displacement, double load) {
-    const std::string by_move = MessageOf([&] { contact.Move(displacement, load); });
-    EXPECT_EQ(contact.Force(), force);
-    EXPECT_EQ(contact.Displacement(), 0.5);
-    EXPECT_EQ(contact.NormalLoad(), 1.0);
-    return by_move;
-  };
-  EXPECT_EQ(refusal(kNan, 1.0),
-            "displacement [m] = nan is invalid: must be finite and within +-1e100 m");
-  EXPECT_THAT(refusal(-1.1e100, 1.0), HasSubstr("displacement [m] = -1.1e+100 is invalid"));
-  EXPECT_EQ(refusal(1.0, -2.0), "normal load [N] = -2 is invalid: must be finite and >= 0");
-  EXPECT_THAT(refusal(1.0, kNan), HasSubstr("normal load [N] = nan"));
-  EXPECT_THAT(refusal(1.0, HUGE_VAL), HasSubstr("normal load [N] = inf"));
-  EXPECT_THAT(refusal(1.0, 1e6), HasSubstr("normal load [N] = 1000000 is invalid: must keep the"));
-}
-
-TEST(LoadedContactState, RefusesInvalidContact) {
-  LoadDependentLaw law = UnitLaw(0.5);
-  EXPECT_THROW(LoadedContactState(law, {.normal_load = -1.0}), InvalidArgument);
-  EXPECT_THROW(LoadedContactState(law, {.unloaded_displacement = kNan}), InvalidArgument);
-  law.shape_exponent = 1.0;
-  EXPECT_THROW(LoadedContactState{law}, InvalidArgument);
+  EXPECT_LE(contact.zones(), zones + 1);
 }
 
 }  // namespace

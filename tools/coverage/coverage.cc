@@ -12,12 +12,12 @@
 
 #include "../../tests/support/imposed_force.h"
 #include "../../tests/support/joint.h"
+#include "../../tests/support/variable_load.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
-#include "mindahl/models/variable_load.h"
 
 namespace mindahl::coverage {
 
@@ -240,11 +240,11 @@ Record DrivenRecord(const Scenario& scenario, double load, bool is_steady) {
           testing::JointForces(law, scenario.asymmetry, record.displacement, record.normal_load);
       return record;
     }
-    models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / (kMeanLoad * load),
-                                    .reference_load = kMeanLoad * load,
-                                    .reference_stiffness = law.tangential_stiffness,
-                                    .shape_exponent = law.shape_exponent},
-                                   record.displacement, record.normal_load, record.force);
+    testing::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / (kMeanLoad * load),
+                                     .reference_load = kMeanLoad * load,
+                                     .reference_stiffness = law.tangential_stiffness,
+                                     .shape_exponent = law.shape_exponent},
+                                    record.displacement, record.normal_load, record.force);
   } else {
     record.force = ForceOn(law, record.displacement, scenario.asymmetry, RigOf(scenario));
   }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../tests/support/variable_load.h"
 #include "kind.h"
-#include "mindahl/models/variable_load.h"
 #include "simulation.h"
 
 /// A normal load that does not stay what it was.
@@ -19,8 +19,8 @@ Loop UnderLoad(const Truth& truth, double variation, Draws& draws, Load load) {
   constexpr double kLargestShape = 0.95;  // the law under load slips at a finite displacement
   Truth loaded = truth;
   loaded.law.shape_exponent = std::min(truth.law.shape_exponent, kLargestShape);
-  const models::LoadDependentLaw law{kFriction, loaded.law.slip_force / kFriction,
-                                     loaded.law.tangential_stiffness, loaded.law.shape_exponent};
+  const testing::LoadDependentLaw law{kFriction, loaded.law.slip_force / kFriction,
+                                      loaded.law.tangential_stiffness, loaded.law.shape_exponent};
   const Motion motion = Sine(loaded, draws);
   std::vector<double> normal_load;
   for (const double time : motion.time) {
@@ -29,7 +29,7 @@ Loop UnderLoad(const Truth& truth, double variation, Draws& draws, Load load) {
         (1 + variation * load(time * truth.frequency, motion.time.back() * truth.frequency)));
   }
   Record record = Drive(motion, [&](std::span<const double> displacement, std::span<double> force) {
-    models::EvaluateForceUnderLoad(law, displacement, normal_load, force);
+    testing::EvaluateForceUnderLoad(law, displacement, normal_load, force);
   });
   record.normal_load.assign(normal_load.begin() + static_cast<std::ptrdiff_t>(motion.unseen),
                             normal_load.end());

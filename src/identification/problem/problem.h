@@ -53,7 +53,7 @@ class ResponseColumns {
 };
 
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
-/// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of
+/// where a record is under one load, by the elements' (models/load_zones.h) where it varies. Of
 /// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
 /// that has a force beyond slip. Keeps the loading paths, which depend on the point only where a
 /// contact is unloaded, by its lag and its asymmetry, and its buffers.
