@@ -23,10 +23,6 @@ Tracker::Tracker(TrackOptions options, Done done)
       done_(std::move(done)),
       splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together) {
   if (options_.threads < 1) ThrowInvalid("threads [-]", 0, "must be >= 1");
-  if (options_.skipped % kBatch != 0) {
-    ThrowInvalid("skipped fits [-]", static_cast<double>(options_.skipped),
-                 "must be a multiple of a batch");
-  }
   const CycleFitter refused_here(options_.fit);  // and not in a thread
 }
 

@@ -182,9 +182,6 @@ std::span<const TargetRow> Targets() { return kTargets; }
 
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options) {
-  if (contact.model == nullptr) {
-    throw InvalidArgument("the contact must follow Masing's law or Dahl's own");
-  }
   models::Validate(contact.law);
   RequireOptions(target, options);
   Conversion conversion;

@@ -40,13 +40,7 @@ double Solve(const Function& function, double low, double high) {
 /// Bouc's and Wen's law over y = kx/Tc, t = T/Tc, which has no closed form.
 class BoucWenBranch {
  public:
-  explicit BoucWenBranch(const BoucWenLaw& law) : law_(law) {
-    RequirePositive("Bouc-Wen stiffness [N/m]", law.stiffness);
-    RequirePositive("Bouc-Wen slip force [N]", law.slip_force);
-    if (!(law.exponent >= 1 && law.exponent <= kLargestExponent)) {
-      ThrowInvalid("Bouc-Wen exponent [-]", law.exponent, "must be in 1 … 20");
-    }
-  }
+  explicit BoucWenBranch(const BoucWenLaw& law) : law_(law) {}
 
   /// Force t and work ∫t dy since the branch's start.
   struct State {

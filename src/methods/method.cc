@@ -241,10 +241,6 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   Validate(law);
   if (resolution.steps == 0) ThrowInvalid("steps [-]", 0.0, "must be >= 1");
   RequirePositive("tolerance [-]", resolution.tolerance);
-  if (method.adaptive && resolution.tolerance < kLeastTolerance) {
-    ThrowInvalid("tolerance [-]", resolution.tolerance,
-                 fmt::format("must be >= {:g}, or rounding alone exceeds it", kLeastTolerance));
-  }
   if (method.masing_only && model.memory != models::Memory::kReturnPoint) {
     throw InvalidArgument(fmt::format(
         "method {} cannot compute model {}: its elements remember every reversal, the model does "

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -23,8 +22,6 @@ using models::FrictionModel;
 
 namespace {
 
-/// Resolutions at which a method is tried: tolerances, or steps, which grow fourfold.
-constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
 constexpr const char* kExactModel = "mindlin-dahl";
 
 /// Returns ∫T dδ [J], trapezoidal.
@@ -69,8 +66,8 @@ std::vector<Approximation> AllApproximations() {
   }
   for (const Method& method : methods::Methods()) {
     if (method.name == "exact") continue;
-    std::size_t steps = method.masing_only ? 4 : 16;  // elements, intervals
-    for (const double tolerance : kTolerances) {
+    std::size_t steps = method.masing_only ? 4 : 16;  // elements, intervals: grow fourfold
+    for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
       all.push_back({kExactModel, std::string(method.name),
                      method.adaptive ? Resolution{.tolerance = tolerance}
                                      : Resolution{.steps = std::exchange(steps, 4 * steps)}});

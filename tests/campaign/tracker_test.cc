@@ -57,7 +57,6 @@ TEST(Tracker, RefusesOptionsBeforeItBegins) {
   using Change = std::function<void(TrackOptions&)>;
   for (const Change& change :
        {Change([](TrackOptions& options) { options.threads = 0; }),
-        Change([](TrackOptions& options) { options.skipped = kBatch + 1; }),
         Change([](TrackOptions& options) { options.fit.max_iterations = 0; })}) {
     TrackOptions options;
     change(options);

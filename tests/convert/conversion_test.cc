@@ -110,7 +110,6 @@ TEST(Conversion, ToElementsIsTheTangentsOfTheVirginCurve) {
 }
 
 TEST(Conversion, RefusesOptionsThatBreakARule) {
-  EXPECT_THROW(To("dahl", {nullptr, kMindlin.law}), InvalidArgument);
   EXPECT_THROW(To("dahl", kMindlin, {.amplitude = -1.0}), InvalidArgument);
   EXPECT_THROW(To("dahl", kMindlin, {.tolerance = 0.0}), InvalidArgument);
   EXPECT_THROW(To("dahl", kMindlin, {.tolerance = 1.0}), InvalidArgument);

@@ -151,10 +151,6 @@ TEST(SteadyLaw, IsComparedWhereTheBranchesDifferMost) {
 }
 
 TEST(SteadyLaw, RefusesInvalidLaw) {
-  const Branch branch(1.0);
-  EXPECT_THROW(branch.Of(BoucWenLaw{-1.0, 1.0, 1.0}), InvalidArgument);
-  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 0.0, 1.0}), InvalidArgument);
-  EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 0.5}), InvalidArgument);
   EXPECT_THROW(LoopOf(BoucWenLaw{1.0, 1.0, 1.0}, -1.0).energy, InvalidArgument);
   EXPECT_THROW(LoopOf(ModelLaw{&Model("dahl"), {0.0, 1.0, 1.0}}, 1.0).energy, InvalidArgument);
 }

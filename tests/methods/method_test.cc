@@ -274,17 +274,6 @@ TEST(Method, RefusesParametersOutOfRange) {
   }
 }
 
-TEST(Method, OfAdaptiveStepsRefusesAToleranceThatRoundingExceeds) {
-  const FrictionModel& model = *models::FindFrictionModel("mindlin");
-  const BranchLaw law{1, 1.0 / 3, 1};
-  for (const Method& method : Methods()) {
-    EXPECT_EQ(MessageOf([&] { Prepare(method, model, law, {.tolerance = kLeastTolerance}); }), "");
-    const std::string message =
-        MessageOf([&] { Prepare(method, model, law, {.tolerance = kLeastTolerance / 2}); });
-    EXPECT_EQ(!message.empty(), method.adaptive) << method.name << message;
-  }
-}
-
 TEST(Method, IsFoundByItsNameOnly) {
   for (const Method& method : Methods()) EXPECT_EQ(FindMethod(method.name), &method);
   EXPECT_EQ(FindMethod("IWAN"), nullptr);

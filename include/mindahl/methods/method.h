@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string_view>
 
@@ -23,12 +22,9 @@ struct Drive {
 struct Resolution {
   /// Substeps a sample, elements or intervals: what the method says. >= 1
   std::size_t steps = 1;
-  /// Largest local error of T/Tc in a step of an adaptive method, >= kLeastTolerance.
+  /// Largest local error of T/Tc in a step of an adaptive method, above rounding.
   double tolerance = 1e-6;
 };
-
-/// 4 ε: what rounding does to u in [0, 1] over the stages of one step.
-inline constexpr double kLeastTolerance = 4 * std::numeric_limits<double>::epsilon();
 
 /// Computes the force [N] along a drive; reversals and branches are found within. The spans must
 /// have one length.
