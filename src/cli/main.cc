@@ -5,7 +5,6 @@
 
 int main(int argc, char** argv) {
   mindahl::KeepFreedMemory();
-  mindahl::OccupyClosedStreams();
   mindahl::IgnoreFileSizeSignal();
   return mindahl::cli::Run(argc, argv, std::cout, std::cerr);
 }

@@ -21,14 +21,6 @@ extern char** environ;
 
 namespace mindahl {
 
-void OccupyClosedStreams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // Writing results must fail, writing messages need not.
-    if (::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) != stream) return;
-  }
-}
-
 void KeepFreedMemory() {
 #ifdef __GLIBC__
   constexpr int kMost = 1 << 30;  // [bytes]
@@ -72,27 +64,6 @@ int CopyPermissions(const std::string& from, int file) {
   struct stat status {};
   if (::stat(from.c_str(), &status) != 0) return errno;
   return ::fchmod(file, status.st_mode & 07777) != 0 ? errno : 0;
-}
-
-int OpenTemporary(const std::string& name, int& file) {
-#ifdef O_TMPFILE
-  const std::string directory = name.substr(0, name.rfind('/') + 1);
-  const char* const where = directory.empty() ? "." : directory.c_str();
-  if (::access("/proc/self/fd", X_OK) == 0) {  // by which it is named
-    file = ::open(where, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-    if (file >= 0) return 0;
-  }
-#endif
-  return OpenFile(name, Opening::kNew, file);
-}
-
-int NameTemporary(int file, const std::string& name) {
-  struct stat status {};
-  if (::fstat(file, &status) != 0) return errno;
-  if (status.st_nlink > 0) return 0;
-  const std::string from = "/proc/self/fd/" + std::to_string(file);
-  const int error = ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
-  return error != 0 ? errno : 0;
 }
 
 int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written) {

@@ -11,9 +11,6 @@ namespace mindahl {
 // anew. Only that file includes headers of POSIX; branch_kernel.cc has what compilers differ in.
 // Functions that return an error return errno's value, 0 where there is none.
 
-/// Opens nothing in the place of a standard stream that whoever started the program had closed: the
-/// next file would get its number, and what is printed. Writing results fails then.
-void OccupyClosedStreams();
 /// Keeps what a fit's columns of samples allocate and free, instead of asking the system for it
 /// anew: a tenth of the time of a fit of 10,000 samples.
 void KeepFreedMemory();
@@ -37,12 +34,6 @@ int EndFileAt(int file, std::uintmax_t size);
 int WriteToDisk(int file);
 int CloseFile(int file);
 int CopyPermissions(const std::string& from, int file);
-
-/// Opens a new file, in the directory of a name, that has no name yet and goes with the process;
-/// where the file system has no such files, one of that name.
-int OpenTemporary(const std::string& name, int& file);
-/// Gives it the name.
-int NameTemporary(int file, const std::string& name);
 
 /// Holds what a program wrote.
 struct ProgramOutput {

@@ -42,12 +42,11 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const std::filesystem::path target = is_link ? std::filesystem::canonical(path) : path;
   const std::string name = TemporaryNameOf(target);
   int file = -1;
-  int fault =
-      replaces ? OpenTemporary(name, file) : OpenFile(path.string(), Opening::kExisting, file);
+  int fault = replaces ? OpenFile(name, Opening::kNew, file)
+                       : OpenFile(path.string(), Opening::kExisting, file);
   if (fault == 0 && replaces && is_old) fault = CopyPermissions(target.string(), file);
   if (fault == 0) fault = WriteFile(file, content);
   if (fault == 0 && replaces) fault = WriteToDisk(file);
-  if (fault == 0 && replaces) fault = NameTemporary(file, name);
   // A full disk may show only here.
   const int closed = file >= 0 ? CloseFile(file) : 0;
   if (fault == 0) fault = closed;
