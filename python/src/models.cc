@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "bindings.h"
+#include "core/refuse.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
@@ -29,10 +31,9 @@ using models::FrictionModel;
 namespace {
 
 const FrictionModel& RequireModel(const std::string& name) {
-  std::vector<std::string_view> names;
-  for (const FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
-  RequireOneOf("--model", name, names);
-  return *models::FindFrictionModel(name);
+  if (const FrictionModel* model = models::FindFrictionModel(name)) return *model;
+  Refuse("--model: {}",
+         UnknownAmong(name, NamesOf(models::FrictionModels(), &FrictionModel::name)));
 }
 
 /// The law as the model uses it, whose own α, or 1/3, it has where there is none.

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-
-#include "core/refuse.h"
 
 namespace mindahl {
 
@@ -35,12 +32,6 @@ void RequireSameSize(std::string_view first, std::size_t first_size, std::string
     throw InvalidArgument(fmt::format("{} has {} values and {} has {}: must be equal", first,
                                       first_size, second, second_size));
   }
-}
-
-void RequireOneOf(std::string_view option, std::string_view word,
-                  std::span<const std::string_view> words) {
-  if (std::ranges::find(words, word) != words.end()) return;
-  throw InputError(fmt::format("{}: {}", option, UnknownAmong(word, words)));
 }
 
 }  // namespace mindahl

@@ -51,12 +51,7 @@ constexpr std::array kUnits = {
     Entry{kAngle, "deg", std::numbers::pi, 180, "° degree degrees 度"},
     Entry{kAngle, "rev", 2 * std::numbers::pi, 1, "revolutions"},
     Entry{kTorque, "N m", 1, 1},
-    Entry{kTorque, "mN m", 1, 1e3},
-    Entry{kTorque, "uN m", 1, 1e6},
-    Entry{kTorque, "kN m", 1e3, 1},
     Entry{kTorque, "N mm", 1, 1e3},
-    Entry{kTorque, "lbf in", 4.4482216152605 * 0.0254, 1},
-    Entry{kTorque, "lbf ft", 4.4482216152605 * 0.3048, 1},
     Entry{kTime, "s", 1, 1, "sec secs second seconds sek seg 秒 с"},
     Entry{kTime, "ms", 1, 1e3, "msec 毫秒 milliseconds millis"},
     Entry{kTime, "us", 1, 1e6, "usec micros"},
@@ -118,12 +113,7 @@ std::optional<Unit> FindProduct(std::string_view symbol) {
     if (!force || !length) continue;
     if (sign != " " && force->dimension == kLength) std::swap(force, length);
     if (force->dimension != kForce || length->dimension != kLength) continue;
-    const std::string product = force->symbol + " " + length->symbol;
-    const auto* const entry = std::ranges::find(kUnits, product, &Entry::symbol);
-    if (entry != kUnits.end()) {
-      return Unit{product, kTorque, entry->numerator, entry->denominator};
-    }
-    return Unit{product, kTorque, force->numerator * length->numerator,
+    return Unit{force->symbol + " " + length->symbol, kTorque, force->numerator * length->numerator,
                 force->denominator * length->denominator};
   }
   return std::nullopt;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,10 +37,5 @@ void RequireNonNegative(std::string_view quantity, double value);
 /// @throws InvalidArgument unless the two sizes agree.
 void RequireSameSize(std::string_view first, std::size_t first_size, std::string_view second,
                      std::size_t second_size);
-
-/// Refuses a word that is none of those that an option takes.
-/// @throws InputError naming the option, the word and all of those
-void RequireOneOf(std::string_view option, std::string_view word,
-                  std::span<const std::string_view> words);
 
 }  // namespace mindahl
