@@ -28,7 +28,6 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   Add(quantities, "normal_load", given.known.normal_load, "N", "N");
   Add(quantities, "effective_modulus", made.effective_modulus, "Pa", "E*");
   Add(quantities, "equivalent_radius", made.equivalent_radius, "m", "rho");
-  Add(quantities, "approach", made.approach, "m", "normal approach a^2/rho");
   Add(quantities, "compliance", made.tangential_compliance, "1/Pa",
       "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
   Add(quantities, "contact_radius", made.contact_radius, "m", "a");
@@ -40,7 +39,7 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   Add(parameters, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
       "1/3, Mindlin");
   Add(parameters, "slip_force", made.slip_force, "N", "Tc = mu N");
-  Say("contact: warning", contact::DoubtsAbout(given.known, given.friction_coefficient), console);
+  Say("contact: warning", contact::DoubtsAbout(given.known), console);
   Json rows = quantities;
   rows.update(parameters);
   constexpr int kEveryDigit = 17;

@@ -80,9 +80,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   Draws draws(options.seed);
   AddNoise(force, options.force_noise, draws);
   AddNoise(motion.displacement, options.displacement_noise, draws);
-  Say("simulate: warning",
-      contact::DoubtsAbout(options.law.contact.known, options.law.contact.friction_coefficient),
-      console);
+  Say("simulate: warning", contact::DoubtsAbout(options.law.contact.known), console);
   WriteText(io::CsvText({{"time [s]", motion.time},
                          {"displacement [m]", motion.displacement},
                          {"force [N]", force}}),

@@ -89,11 +89,4 @@ double HertzMaximumPressure(double normal_load, double contact_radius) {
                  1.5L * normal_load / (std::numbers::pi_v<long double> * radius * radius));
 }
 
-double HertzApproach(double contact_radius, double equivalent_radius) {
-  RequirePositive(kContactRadiusName, contact_radius);
-  RequirePositive(kEquivalentRadius, equivalent_radius);
-  const long double radius = contact_radius;
-  return InRange("approach [m]", radius * radius / equivalent_radius);
-}
-
 }  // namespace mindahl::contact

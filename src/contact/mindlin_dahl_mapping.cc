@@ -140,9 +140,6 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
       return stiffness /
              MindlinTangentialStiffness(KnowsHertz(known) ? HertzRadiusOf(known) : radius,
                                         ComplianceOf(known));
-    case ContactQuantity::kHertzPressure:
-      if (!KnowsHertz(known)) return std::nullopt;
-      return HertzMaximumPressure(known.normal_load->value, HertzRadiusOf(known));
   }
   return std::nullopt;
 }
@@ -198,9 +195,6 @@ PredictedContact PredictContact(const KnownContact& known,
   if (by_bodies) {
     predicted.effective_modulus = Propagated(known, EffectiveModulusOf);
     predicted.equivalent_radius = Propagated(known, EquivalentRadiusOf);
-    predicted.approach = Propagated(known, [](const KnownContact& at) {
-      return HertzApproach(HertzRadiusOf(at), EquivalentRadiusOf(at));
-    });
   }
   predicted.tangential_compliance = Propagated(known, ComplianceOf);
   predicted.contact_radius = Propagated(known, radius_of);
@@ -232,13 +226,10 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
 }
 
 std::vector<std::string> DoubtsAbout(const KnownContact& known,
-                                     std::optional<double> friction_coefficient,
                                      std::optional<double> fitted_radius) {
   constexpr double kSoftestModulus = 1e6;     // [Pa]
   constexpr double kStiffestModulus = 2e12;   // [Pa]
   constexpr double kLargestCompliance = 1.0;  // [1/Pa]
-  constexpr double kLargestFriction = 5.0;    // [-]
-  constexpr double kLeastPressure = 1e3;      // [Pa]
   constexpr double kLargestRadiusShare = 1.0 / 3.0;
   std::vector<std::string> doubts;
   if (known.tangential_compliance && known.tangential_compliance->value > kLargestCompliance) {
@@ -268,23 +259,6 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
         "contact radius a = {:.4g} m is more than a third of the radius {:.4g} m of a body, beyond "
         "Hertz's theory: check load, radii, moduli and their units",
         *large, smallest_radius));
-  }
-  const auto* const known_radius =
-      std::ranges::find_if(radii, [](double radius) { return radius > 0; });
-  if (known.normal_load && known_radius != radii.end()) {
-    const double pressure = HertzMaximumPressure(known.normal_load->value, *known_radius);
-    if (pressure < kLeastPressure) {
-      doubts.push_back(fmt::format(
-          "maximum pressure = {:.4g} Pa of contact radius a = {:.4g} m is below 1 kPa: check load "
-          "and radius and their units",
-          pressure, *known_radius));
-    }
-  }
-  if (friction_coefficient && *friction_coefficient > kLargestFriction) {
-    doubts.push_back(
-        fmt::format("friction coefficient mu = {:.4g} is above {:g}: check the normal load, the "
-                    "force and their units",
-                    *friction_coefficient, kLargestFriction));
   }
   return doubts;
 }

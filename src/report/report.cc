@@ -59,8 +59,7 @@ void CollectWarnings(Report& report) {
   if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
   if (report.is_torsional() || report.failed() || !report.check.empty()) return;
   for (const std::string& sentence :
-       contact::DoubtsAbout(report.known, report.ValueOf("friction_coefficient"),
-                            report.ValueOf("contact_radius"))) {
+       contact::DoubtsAbout(report.known, report.ValueOf("contact_radius"))) {
     report.warnings.push_back({"contact_implausible", sentence});
   }
 }
@@ -141,7 +140,7 @@ std::string WhatToCheck(const Report& report) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
     if (std::string found = ImpossibleContact(report); !found.empty()) {
       // An input that no solid can have is the more likely error.
-      const std::vector<std::string> doubts = contact::DoubtsAbout(report.known, std::nullopt);
+      const std::vector<std::string> doubts = contact::DoubtsAbout(report.known);
       return doubts.empty() ? found : doubts.front();
     }
   }

@@ -79,8 +79,6 @@ TEST(HertzInput, NamesTheQuantityThatIsNotPositive) {
             "contact radius [m] = 0 is invalid: must be finite and > 0");
   EXPECT_EQ(MessageOf([] { HertzMaximumPressure(0.0, 1e-3); }),
             "normal load [N] = 0 is invalid: must be finite and > 0");
-  EXPECT_EQ(MessageOf([] { HertzApproach(0.0, 0.01); }),
-            "contact radius [m] = 0 is invalid: must be finite and > 0");
 }
 
 }  // namespace

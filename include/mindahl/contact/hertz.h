@@ -67,12 +67,4 @@ double HertzEquivalentRadius(double normal_load, double contact_radius, double e
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzMaximumPressure(double normal_load, double contact_radius);
 
-/// Returns the mutual approach [m] of distant points of the two bodies under the load.
-///   a²/ρ
-/// Johnson (1985) eq. 4.23.
-/// @param contact_radius     a [m], finite, > 0
-/// @param equivalent_radius  ρ [m], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
-double HertzApproach(double contact_radius, double equivalent_radius);
-
 }  // namespace mindahl::contact

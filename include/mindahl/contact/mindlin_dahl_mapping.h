@@ -64,7 +64,6 @@ void Validate(const KnownContact& known);
 struct PredictedContact {
   std::optional<UncertainValue> effective_modulus;  ///< E* [Pa]; of materials
   std::optional<UncertainValue> equivalent_radius;  ///< ρ [m]; of two radii
-  std::optional<UncertainValue> approach;           ///< a²/ρ [m]; of two radii
   UncertainValue tangential_compliance;             ///< G* [1/Pa]
   UncertainValue contact_radius;                    ///< a [m]
   UncertainValue maximum_pressure;                  ///< p₀ [Pa]
@@ -96,7 +95,6 @@ enum class ContactQuantity {
   /// σ over 8a/G* [-], 1 when the theory holds: of Hertz's a, which needs E, ν and R of both bodies
   /// and N, else of a given a and a known G*
   kStiffnessRatio,
-  kHertzPressure,  ///< p₀ [Pa] of Hertz; needs E, ν and R of both bodies, and N
 };
 
 /// Inverts the mapping: from a stiffness and a slip force to a quantity of the contact.
@@ -125,12 +123,8 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
 ///   E < 1 MPa      softer than rubber
 ///   E > 2 TPa      stiffer than diamond
 ///   a > R/3        of the smaller radius: Hertz's parabola is no sphere any more (Johnson §4.1)
-///   p₀ < 1 kPa     a gram on a coin, of the given a, else the identified one, else Hertz's
-///   μ > 5
-/// @param friction_coefficient  μ [-], given or identified
 /// @param fitted_radius  a [m] as identified; a given one and Hertz's are taken from `known`
 std::vector<std::string> DoubtsAbout(const KnownContact& known,
-                                     std::optional<double> friction_coefficient,
                                      std::optional<double> fitted_radius = std::nullopt);
 
 }  // namespace mindahl::contact
