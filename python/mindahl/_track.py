@@ -43,7 +43,7 @@ class CycleTable(Told, Table):
                 self.units[name] = unit[:-1]
             if name in ("cycle", "first_line", "samples"):
                 self._columns[name] = np.array(cells, dtype=np.int64)
-            elif name in ("slip_regime", "flags"):
+            elif name == "flags":
                 self._columns[name] = np.array(cells, dtype=str)
             else:
                 self._columns[name] = np.array([float(cell or "nan") for cell in cells])

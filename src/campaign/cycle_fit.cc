@@ -14,8 +14,6 @@
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/models/steady_loop.h"
-#include "mindahl/report/contact.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
@@ -116,18 +114,10 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   if (is_known && fit["slip_force"] && fit["normal_load"] && *fit["normal_load"] > 0) {
     fit["friction_coefficient"] = *fit["slip_force"] / *fit["normal_load"];
   }
-  if (result->converged) {
-    fit.slips_grossly = report::SlipsGrossly(
-        *result->model, result->law,
-        identification::ContactAmplitude(*result, result->law, fitted.facts.amplitude));
-  }
   return fit;
 }
 
 namespace {
-
-constexpr std::string_view kPartial = "partial";
-constexpr std::string_view kGross = "gross";
 
 template <typename Value>
 Value CellValue(std::string_view cell) {
@@ -140,7 +130,7 @@ Value CellValue(std::string_view cell) {
 std::string CycleTableHeader() {
   std::string header = "cycle,first_line,samples";
   for (const auto& [name, unit] : kCycleNumbers) header += ',' + report::WithUnit(name, unit);
-  return header + ",slip_regime,accumulated_energy [J],flags\n";
+  return header + ",accumulated_energy [J],flags\n";
 }
 
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
@@ -151,15 +141,14 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
     row.push_back(',');
     if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
-  const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
-  fmt::format_to(end, ",{},{},{}\n", regime, accumulated_energy, fmt::join(fit.flags, " "));
+  fmt::format_to(end, ",{},{}\n", accumulated_energy, fmt::join(fit.flags, " "));
   return fmt::to_string(row);
 }
 
 CycleFit ReadCycleTableRow(std::string_view line) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
-  // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags.
-  constexpr std::size_t kColumns = 3 + kCycleNumbers.size() + 3;
+  // cycle, first_line, samples; the numbers; accumulated_energy, flags.
+  constexpr std::size_t kColumns = 3 + kCycleNumbers.size() + 2;
   if (cells.size() != kColumns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
   }
@@ -170,8 +159,6 @@ CycleFit ReadCycleTableRow(std::string_view line) {
   for (std::size_t k = 0; k < kCycleNumbers.size(); ++k) {
     if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
-  const std::string_view regime = cells[kColumns - 3];
-  if (!regime.empty()) fit.slips_grossly = regime == kGross;
   if (const std::string_view flags = cells[kColumns - 1]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
   }

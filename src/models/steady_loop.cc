@@ -56,15 +56,6 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
   return BranchScaling(model, law, spring_travel).ContactAmplitude(rate * amplitude) / rate;
 }
 
-double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law) {
-  Validate(law);
-  if (law.shape_exponent >= 1) return std::numeric_limits<double>::infinity();
-  // A branch from −Tc reaches Tc where its own y, k·2X, is 1/(1 − α).
-  const BranchScale scale = model.scale(-1.0, /*virgin=*/false);
-  const double masing = 2 / scale.span * std::pow(scale.remaining, law.shape_exponent - 1);
-  return GrossSlipDisplacement(law) / masing;
-}
-
 namespace {
 
 /// Makes a law in long double: a power of α multiplies the error of its logarithm by α.

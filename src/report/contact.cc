@@ -7,7 +7,6 @@
 
 #include "core/probability.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/models/steady_loop.h"
 #include "report/statements.h"
 
 namespace mindahl::report {
@@ -202,14 +201,6 @@ bool DeniesHertz(const FitResult& fit) {
   const double margin =
       by_rig ? NormalQuantile(fit.confidence) * fitted.standard_error.value_or(0.0) : 0.0;
   return fitted.is_known() && ExcludesAThird(fitted, margin);
-}
-
-bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
-                  double contact_amplitude) {
-  const double gross_slip = models::SteadyGrossSlipAmplitude(model, law);
-  if (std::isfinite(gross_slip)) return contact_amplitude >= gross_slip;
-  return models::SteadyPeakForce(model, law, contact_amplitude) >=
-         (1 - identification::Thresholds().never_slips) * law.slip_force;
 }
 
 }  // namespace mindahl::report

@@ -38,7 +38,6 @@ TEST(CycleFitter, FindsTheTruthOfACleanCycle) {
     EXPECT_NEAR(*fit["alpha"], kCycleLaw.shape_exponent, kExact);
     EXPECT_NEAR(*fit["slip_force"], kCycleLaw.slip_force, kExact * kCycleLaw.slip_force);
     EXPECT_NEAR(*fit["amplitude"], kCycleReach, kExact * kCycleReach);
-    EXPECT_TRUE(*fit.slips_grossly);
     EXPECT_FALSE(fit["normal_load"]);
     EXPECT_FALSE(fit["friction_coefficient"]);
   }
@@ -227,8 +226,6 @@ TEST(CycleFitter, HasEveryFactOfItsCycle) {
   EXPECT_GT(*fit["sliding_amplitude"], 0.0);
   EXPECT_EQ(fit["start_time"], cycle.record.time.front());
   EXPECT_EQ(fit.number, 9U);
-  EXPECT_TRUE(*fit.slips_grossly);
-  EXPECT_FALSE(*CycleFitter({}).Fit(Partial(0.5, 2, 0.05).front()).slips_grossly);
 }
 
 TEST(CycleFitter, TurnsWithTheSignOfItsForce) {
@@ -253,7 +250,6 @@ CycleFit Filled(const std::function<double()>& next) {
   fit.first_line = 3402;
   fit.samples = 201;
   for (std::optional<double>& number : fit.numbers) number = next();
-  fit.slips_grossly = true;
   fit.flags = {"glitches", "alpha_open"};
   return fit;
 }
@@ -297,16 +293,12 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
             "energy_friction_coefficient,normal_load [N],sigma [N/m],"
             "sigma_error [N/m],alpha,alpha_error,slip_force [N],slip_force_error [N],"
             "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,"
-            "contact_radius [m],slip_regime,accumulated_energy [J],flags\n");
+            "contact_radius [m],accumulated_energy [J],flags\n");
   double next = 0.5;
   CycleFit fit = Filled([&] { return next += 1; });
   EXPECT_EQ(CycleTableRow(fit, 21.5),
             "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
-            "16.5,17.5,18.5,19.5,20.5,gross,21.5,glitches alpha_open\n");
-  fit.slips_grossly = false;
-  EXPECT_NE(CycleTableRow(fit, 21.5).find(",partial,"), std::string::npos);
-  EXPECT_FALSE(*ReadCycleTableRow(WithoutEnd(CycleTableRow(fit, 21.5))).slips_grossly);
-  EXPECT_TRUE(*ReadCycleTableRow(WithoutEnd(CycleTableRow(Filled(), 21.5))).slips_grossly);
+            "16.5,17.5,18.5,19.5,20.5,21.5,glitches alpha_open\n");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_F(TrackCommand, WritesARowACycle) {
   for (std::size_t k = 1; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k][0], std::to_string(k));
     energy += std::stod(rows[k][8]);
-    EXPECT_NEAR(std::stod(rows[k][24]), energy, 1e-12 * energy);
+    EXPECT_NEAR(std::stod(rows[k][23]), energy, 1e-12 * energy);
   }
 }
 

@@ -92,24 +92,6 @@ TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
   EXPECT_THROW(ContactAmplitude(model, law, {}, -1.0), InvalidArgument);
 }
 
-TEST(SteadyLoop, SlipsGrosslyFromTheAmplitudeThatItsBranchesReachSlipAt) {
-  constexpr double kRounding = 1e-14;
-  for (const double alpha : {0.0, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
-    const BranchLaw law{4e7, alpha, 40.0};
-    const double limit = GrossSlipDisplacement(law);
-    EXPECT_NEAR(SteadyGrossSlipAmplitude(Model("mindlin-dahl"), law) / limit, 1, kRounding);
-    EXPECT_NEAR(SteadyGrossSlipAmplitude(Model("dahl"), law) / limit, std::exp2(-alpha), kRounding);
-    if (alpha == 0.0) continue;  // a corner: just below it the force is as much less
-    // By the loops themselves: below it they stay below Tc, from it on they do not.
-    for (const char* name : {"mindlin-dahl", "dahl"}) {
-      const double amplitude = SteadyGrossSlipAmplitude(Model(name), law);
-      EXPECT_LT(SteadyPeakForce(Model(name), law, 0.9 * amplitude), law.slip_force) << name;
-      EXPECT_EQ(SteadyPeakForce(Model(name), law, 1.001 * amplitude), law.slip_force) << name;
-    }
-  }
-  EXPECT_TRUE(std::isinf(SteadyGrossSlipAmplitude(Model("dahl"), {4e7, 1.0, 40.0})));
-}
-
 /// 60 digits: α = 100 at y = 1e12 leaves 50 of them.
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>>;
 

@@ -39,7 +39,7 @@ def assert_same_table(tracked, table):
     assert list(tracked) == [name for name in tracked if name in table]
     assert set(tracked) == set(table)
     for name, cells in table.items():
-        if name in ("flags", "slip_regime"):
+        if name == "flags":
             assert list(tracked[name]) == cells, name
             continue
         expected = np.array([float(cell) if cell else np.nan for cell in cells])

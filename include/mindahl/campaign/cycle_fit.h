@@ -60,7 +60,6 @@ struct CycleFit {
   std::size_t samples = 0;
   /// Numbers of the table's columns, each empty where it is not known.
   std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
-  std::optional<bool> slips_grossly{};  ///< the fitted law at the cycle's amplitude
   /// Holds the warnings about this cycle, sigma_open and others: docs/track.md.
   std::vector<std::string> flags{};
 

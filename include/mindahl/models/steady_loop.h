@@ -30,13 +30,6 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude);
 
-/// Returns the least amplitude [m] of the contact whose steady loop slips grossly: δc = Tc/(σ(1−α))
-/// of a Masing law, 2^−α·δc of Dahl's own, whose branches set out steeper after a reversal.
-/// Infinite for α >= 1.
-/// @throws InvalidArgument for an invalid law
-/// Relative error 4 ε.
-double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law);
-
 /// Masing's law (Mindlin's, Full-Dahl) and Dahl's own law (eq. 10) on a steady loop of one
 /// amplitude: they are one curve there, each with a σ and a Tc of its own (docs/theory.md §6).
 

@@ -8,7 +8,6 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/record.h"
-#include "mindahl/models/branch_law.h"
 
 namespace mindahl::report {
 
@@ -47,10 +46,5 @@ AlphaTest TestAlpha(const identification::FitResult& fit);
 /// True if a load series denies Hertz's law: 1/3 lies outside the interval of p, or p was held at
 /// another value. Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
-
-/// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip; of a law with
-/// α >= 1, which never quite does, 99 % of its slip force.
-bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
-                  double contact_amplitude);
 
 }  // namespace mindahl::report
