@@ -269,12 +269,7 @@ class Writer {
 
   void AddLeftOut() {
     std::vector<std::string> parts;
-    constexpr std::size_t kMost = 3;
     for (const LeftOut& part : report_.left_out) {
-      if (parts.size() == kMost) {
-        parts.push_back(fmt::format("{} more parts", report_.left_out.size() - kMost));
-        break;
-      }
       parts.push_back(part.first == 0
                           ? fmt::format("{} samples ({})", part.samples, part.why)
                           : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
