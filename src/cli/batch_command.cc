@@ -80,7 +80,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
       "DIR");
   AddThreads(group, options->threads, "the results");
-  AddStrict(group, options->strict, "a file fails too");
+  AddStrict(command, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
   OnRun(command, [options, &console] { RunBatch(*options, console); });

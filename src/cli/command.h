@@ -120,12 +120,6 @@ class OptionGroup {
     const CLI::Validator is_one = CLI::IsMember({"true", "false"}).description("");
     return Grouped(command_.add_flag(option, value, help)->check(is_one), "");
   }
-  /// Adds a flag that may have a word of its own: "--strict{adequate}".
-  CLI::Option* AddFlagWithWord(const std::string& option,
-                               const std::function<void(const std::string&)>& read,
-                               const std::string& help) const {
-    return Grouped(command_.add_flag(option, help)->each(read), "");
-  }
   /// Adds --json, where the answer goes for scripts.
   CLI::Option* AddJson(std::string& path) const {
     return Add("--json", path, "answer as JSON; - for standard output alone", "PATH");
@@ -169,7 +163,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request);
 
 /// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
 /// @param otherwise  what happens to a fit that is not: "exit status 3"
-void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise);
+void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise);
 
 // --- inputs and outputs
 

@@ -70,7 +70,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
-  AddStrict(group, options->strict, "exit status 3");
+  AddStrict(command, options->strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
   OnRun(command, [options, &console] { RunFit(*options, console); });

@@ -352,18 +352,19 @@ void AddFitOptions(CLI::App& command, FitRequest& request) {
   AddContactOptions(command, request.contact);
 }
 
-void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {
+void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise) {
   const auto read = [&strictness](const std::string& given) {
     strictness = given == "doubtful" ? Strictness::kDoubtful
                  : given == "false"  ? Strictness::kNone
                                      : Strictness::kAdequate;  // strict = true of a configuration
   };
-  group
-      .AddFlagWithWord("--strict{adequate}", read,
-                       otherwise +
+  const std::string help = otherwise +
                            " unless the model is adequate and every free\n"
                            "parameter identifiable; --strict=doubtful accepts a doubtful\n"
-                           "model and parameters that are effective")
+                           "model and parameters that are effective";
+  command.add_flag("--strict{adequate}", help)
+      ->each(read)
+      ->group("Results")
       ->check(CLI::IsMember({"adequate", "doubtful", "true", "false"}).description(""));
 }
 
