@@ -137,7 +137,10 @@ class Report(Told, AnySection):
         name = next(iter(tables), None) if table is None else table
         if name not in tables:
             raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(tables)}")
-        return pandas.json_normalize(tables[name], sep="_")
+        rows = tables[name]
+        if "points" in rows[0]:  # one row a point
+            rows = [{"excitation": row["name"], **point} for row in rows for point in row["points"]]
+        return pandas.json_normalize(rows, sep="_")
 
 
 def _wrapped(value: Any, path: str) -> Any:

@@ -156,6 +156,10 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_fric
 /// Adds --sigma, --alpha and --slip-force.
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
 
+/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
+/// slip is only approached.
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
+
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
 void AddModelOptions(CLI::App& command, FitRequest& request);
 /// Adds those of columns, of the model and of the contact, and which samples count.

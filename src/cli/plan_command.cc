@@ -1,7 +1,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <cmath>
 
 #include "cli/command.h"
 #include "mindahl/core/units.h"
@@ -102,14 +101,6 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
     wanted[text.substr(0, equals)] = {*precision, text.ends_with('%')};
   }
   return wanted;
-}
-
-/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
-/// slip is only approached.
-double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
-  const double slip = models::GrossSlipDisplacement(law);
-  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
-         law.slip_force / rig.stiffness;
 }
 
 Plan MakePlan(const PlanOptions& options) {

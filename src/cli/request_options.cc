@@ -99,6 +99,12 @@ void AddLawParameters(const OptionGroup& group, LawOptions& law) {
   group.AddQuantity("--slip-force", law.slip_force, "slip force Tc [N]", "N", "N");
 }
 
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
+  const double slip = models::GrossSlipDisplacement(law);
+  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+         law.slip_force / rig.stiffness;
+}
+
 namespace {
 
 /// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.

@@ -1,17 +1,23 @@
+#include <array>
+
 #include "cli/command.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
+#include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::cli {
 
+using methods::Method;
+using models::BranchLaw;
+using models::Waveform;
 using tradeoff::WorkPrecision;
 
 namespace {
 
 struct TradeoffOptions {
-  LawOptions law;  // default: the contact of Peyret et al. (2017) §3
-  std::string path;
+  LawOptions law;    // default: the contact of Peyret et al. (2017) §3
+  std::string path;  // a file with a displacement, in place of the scenes
   std::string column;
   std::string csv;
   std::string plot;
@@ -19,70 +25,128 @@ struct TradeoffOptions {
   double tolerance = 0.01;
 };
 
+struct Scene {
+  std::string_view name;
+  Waveform waveform;
+  double lambda;  // of the largest extreme
+  double cycles;
+};
+
+constexpr std::array kScenes = {
+    Scene{"micro-slip, sine", Waveform::kSine, 0.8, 5},
+    Scene{"macro-slip, sine", Waveform::kSine, 1.2, 5},
+    Scene{"growing sine", Waveform::kGrowingSine, 1.5, 10},
+};
+
 /// The contact of Peyret et al. (2017) §3.
-models::BranchLaw PaperContact() {
+BranchLaw PaperContact() {
   return contact::MapMindlinToDahl({.contact_radius = 0.0027,
                                     .tangential_compliance = 4.42e-11,
                                     .slip_force = contact::GrossSlipForce(0.3, 100)});
 }
 
-Json RowOf(const WorkPrecision& point) {
-  const tradeoff::Approximation& approximation = point.approximation;
-  const methods::Method* method = methods::FindMethod(approximation.method);
-  const bool has_steps = method != nullptr && !method->steps.empty();
-  const bool is_adaptive = method != nullptr && method->adaptive;
-  return {{"model", approximation.model},
-          {"method", method == nullptr ? Json() : Json(approximation.method)},
-          {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
-          {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
-          {"cost_ns_per_sample", point.cost},
-          {"max_force_error", point.precision.max_force},
-          {"energy_error", NumberOrNull(point.precision.energy)}};
+/// Returns what was measured along an excitation, for text, CSV and JSON.
+Json Measure(const std::string& name, const methods::Drive& drive, const BranchLaw& law,
+             double tolerance) {
+  const std::vector<WorkPrecision> points = tradeoff::MeasureWorkPrecision(law, drive);
+  const Json rows = report::ListOf(points, [](const WorkPrecision& point) -> Json {
+    const tradeoff::Approximation& approximation = point.approximation;
+    const Method* method = methods::FindMethod(approximation.method);
+    const bool has_steps = method != nullptr && !method->steps.empty();
+    const bool is_adaptive = method != nullptr && method->adaptive;
+    return {{"model", approximation.model},
+            {"method", method == nullptr ? Json() : Json(approximation.method)},
+            {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
+            {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
+            {"cost_ns_per_sample", point.cost},
+            {"max_force_error", point.precision.max_force},
+            {"energy_error", NumberOrNull(point.precision.energy)}};
+  });
+  return {{"name", name},
+          {"samples", drive.displacement.size()},
+          {"cheapest", rows[tradeoff::CheapestWithin(tolerance, points)]},
+          {"points", rows}};
 }
 
-io::Plot ToPlot(const Json& points) {
-  constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
-  io::PlotPanel panel{.x_label = "cost [ns/sample]",
-                      .y_label = "largest error of T over T*",
-                      .log_x = true,
-                      .log_y = true};
-  for (const Json& point : points) {
-    const bool other_model = point["model"] != points.back()["model"];
-    const std::string label = point[other_model ? "model" : "method"];
-    if (panel.series.empty() || panel.series.back().label != label) {
-      panel.series.push_back({.label = label, .style = io::PlotStyle::kLineAndPoints});
-    }
-    panel.series.back().x.push_back(point["cost_ns_per_sample"]);
-    panel.series.back().y.push_back(std::max(point["max_force_error"].get<double>(), kRounding));
+Json MeasureAll(const TradeoffOptions& request, const BranchLaw& law) {
+  if (!request.path.empty()) {
+    const std::vector<double> displacement = io::ImposedDisplacement(request.path, request.column);
+    return Json::array(
+        {Measure(request.path, {.displacement = displacement}, law, request.tolerance)});
   }
-  return {.title = "Work and precision: largest force error against cost",
-          .panels = {std::move(panel)}};
+  return report::ListOf(kScenes, [&](const Scene& scene) {
+    const models::Excitation excitation =
+        models::MakeExcitation({.waveform = scene.waveform,
+                                .amplitude = scene.lambda * SlipReach(law),
+                                .cycles = scene.cycles});
+    methods::Drive drive{.displacement = excitation.displacement};
+    if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
+    return Measure(fmt::format("{}, lambda = {:g}", scene.name, scene.lambda), drive, law,
+                   request.tolerance);
+  });
+}
+
+std::string ToText(const Json& excitations, const BranchLaw& law, double tolerance) {
+  std::string text = fmt::format("sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N\n",
+                                 law.tangential_stiffness, law.shape_exponent, law.slip_force);
+  for (const Json& excitation : excitations) {
+    text += fmt::format(
+        "\n{}: {} samples\ncheapest within {:g} % of the peak force and of the energy:\n{}\n{}",
+        excitation["name"].get<std::string>(), excitation["samples"].get<std::size_t>(),
+        100 * tolerance, report::TableText(Json::array({excitation["cheapest"]}), 3),
+        report::TableText(excitation["points"], 3));
+  }
+  return text;
+}
+
+/// Returns every point as CSV.
+std::string PointsCsv(const Json& excitations) {
+  Json rows = Json::array();
+  for (const Json& excitation : excitations) {
+    for (const Json& point : excitation["points"]) {
+      rows.push_back({{"excitation", excitation["name"]}});
+      rows.back().update(point);
+    }
+  }
+  return report::TableCsv(rows);
+}
+
+io::Plot ToPlot(const Json& excitations) {
+  constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
+  io::Plot plot{.title = "Work and precision: largest force error against cost"};
+  for (const Json& excitation : excitations) {
+    io::PlotPanel panel{.x_label = "cost [ns/sample]",
+                        .y_label = "largest error of T over T*",
+                        .log_x = true,
+                        .log_y = true,
+                        .title = excitation["name"]};
+    const Json& points = excitation["points"];
+    for (const Json& point : points) {
+      const bool other_model = point["model"] != points.back()["model"];
+      const std::string label = point[other_model ? "model" : "method"];
+      if (panel.series.empty() || panel.series.back().label != label) {
+        panel.series.push_back({.label = label, .style = io::PlotStyle::kLineAndPoints});
+      }
+      panel.series.back().x.push_back(point["cost_ns_per_sample"]);
+      panel.series.back().y.push_back(std::max(point["max_force_error"].get<double>(), kRounding));
+    }
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
   const bool is_contact_given = IsAnythingGiven(options.law) || options.law.alpha;
-  const models::BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
-  const std::vector<double> displacement = io::ImposedDisplacement(options.path, options.column);
-  const std::vector<WorkPrecision> measured =
-      tradeoff::MeasureWorkPrecision(law, {.displacement = displacement});
-  const Json cheapest = RowOf(measured[tradeoff::CheapestWithin(options.tolerance, measured)]);
-  const Json points = report::ListOf(measured, RowOf);
+  const BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
+  const Json excitations = MeasureAll(options, law);
   // The plot first: it alone may still fail.
-  if (!options.plot.empty()) io::WritePlot(ToPlot(points), options.plot);
-  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, report::TableCsv(points));
-  constexpr int kDigits = 3;
-  WriteAnswer(
-      options.json, console,
-      report::Document("mindahl.tradeoff/1", {{"law", report::LawJson(law)},
-                                              {"tolerance", options.tolerance},
-                                              {"samples", displacement.size()},
-                                              {"cheapest", cheapest},
-                                              {"points", points}}),
-      fmt::format("sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N; {} samples\n"
-                  "cheapest within {:g} % of the peak force and of the energy:\n{}\n{}",
-                  law.tangential_stiffness, law.shape_exponent, law.slip_force, displacement.size(),
-                  100 * options.tolerance, report::TableText(Json::array({cheapest}), kDigits),
-                  report::TableText(points, kDigits)));
+  if (!options.plot.empty()) io::WritePlot(ToPlot(excitations), options.plot);
+  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(excitations));
+  WriteAnswer(options.json, console,
+              report::Document("mindahl.tradeoff/1", {{"law", report::LawJson(law)},
+                                                      {"tolerance", options.tolerance},
+                                                      {"excitations", excitations}}),
+              ToText(excitations, law, options.tolerance));
 }
 
 }  // namespace
@@ -93,14 +157,14 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
       AddCommand(app, "tradeoff",
                  "Compares error and cost of every model and method along an excitation,\n"
                  "and names the cheapest whose force and dissipated energy are within a\n"
-                 "tolerance of the exact ones. By default the contact is that of Peyret\n"
-                 "et al. (2017).",
+                 "tolerance of the exact ones. By default the contact and three\n"
+                 "excitations are those of Peyret et al. (2017).",
                  {"mindahl tradeoff --path path.csv --displacement \"[um]\" --sigma 4e7 "
                   "--slip-force 40 --tolerance 1%",
-                  "mindahl tradeoff --path path.csv --displacement \"[um]\" --csv points.csv"});
+                  "mindahl tradeoff --csv points.csv"});
   AddLawParameters(OptionGroup(command, "Parameters"), options->law);
   const OptionGroup group(command, "Excitation");
-  AddPath(group, options->path, options->column)->required();
+  AddPath(group, options->path, options->column);
   group
       .AddQuantity("--tolerance", options->tolerance,
                    "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E",
@@ -108,7 +172,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
       ->capture_default_str();
   const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
-  output.Add("--plot", options->plot, "work-precision diagram, svg or png", "PATH");
+  output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.AddJson(options->json);
   OnRun(command, [options, &console] { RunTradeoff(*options, console); });
 }

@@ -79,7 +79,7 @@ const std::map<std::string, std::string> kUses = {
     {"track", SampleRecord() + " --output #"},
     {"batch", SampleRecord() + " --output #"},
     {"validate", ""},
-    {"tradeoff", "--sigma 4e7 --slip-force 40 --path " + SampleRecord()}};
+    {"tradeoff", ""}};
 
 TEST(BadValues, OfEveryOptionAreRefusedInOneLineThatNamesIt) {
   std::size_t tried = 0;

@@ -25,7 +25,7 @@ WIDE_LINES_LEFT = {"fit": 1, "simulate": 1, "tradeoff": 1,
                    "track": 1, "batch": 1}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
-WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|PATH|PATH REQUIRED|UNIT|FILE( \.\.\.)? REQUIRED|UINT=\d+|TEXT:\{.*)$")
+WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
 # And these of some commands, each with the reason.
 EXEMPT = {
     "--start": ("fit track batch", "in the unit of the parameter, which --fix lists"),

@@ -97,7 +97,7 @@ COMMANDS = [
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 "
      "--want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
-    ("tradeoff --path loop.csv --sigma 4e7 --slip-force 40", 0),
+    ("tradeoff", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
     ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1", 0),

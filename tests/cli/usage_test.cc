@@ -157,8 +157,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"convert ~ --amplitude 1 --to lammps --input-lines -", "--normal-load"},
     {"convert ~ --amplitude 1 --to dahl --normal-load 3", "unless --to is lammps"},
     {"convert ~ --amplitude 1 --to dahl --json - --input-lines -", "give each a file"},
-    {"convert ~ --amplitude 1 --to dahl --tolerance little",
-     "--tolerance: 'little' is no quantity in -"},
+    {"convert ~ --amplitude 1 --to dahl --tolerance little", "--tolerance: 'little' is no quantity in -"},
     {"contact --friction 0.3 --json #", "--normal-load"},
     {"contact --friction 0.3 --normal-load 1 --youngs-modulus-1 1e9 --poisson-1 0.3 "
      "--radius-1 inf --youngs-modulus-2 1e9 --poisson-2 0.3 --radius-2 inf",
@@ -166,9 +165,9 @@ const std::vector<BadUsage> kBadUsage = {
     {"contact --friction 0.3 --normal-load 1e300 --contact-radius 1e-200 --compliance 4e-300 "
      "--json #",
      "maximum pressure [Pa] = inf"},
-    {"tradeoff --path @ --alpha 0.7 --json #", "--sigma missing: give --sigma and --slip-force"},
-    {"tradeoff ~ --path @ --tolerance -1%", "--tolerance"},
-    {"tradeoff ~ --path @ --tolerance 200%", "--tolerance"},
+    {"tradeoff --alpha 0.7 --json #", "--sigma missing: give --sigma and --slip-force"},
+    {"tradeoff --tolerance -1%", "--tolerance"},
+    {"tradeoff --tolerance 200%", "--tolerance"},
     {"plan ~", "force noise [N] = 0 is invalid"},
     {"plan ~ --force-noise 0.4 --want alpha", "'alpha' is no precision"},
     {"plan ~ --force-noise 0.4 --want alpha=1x", "--want: 'alpha=1x' is no precision"},

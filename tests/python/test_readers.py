@@ -169,7 +169,7 @@ def test_an_open_file_is_taken_where_a_path_is(tmp_path):
     def answers(given):
         return (mindahl.read_csv(given()).displacement.tolist(), mindahl.plan(given()).to_json(),
                 mindahl.command("fit", given(), terms="none").parameters,
-                mindahl.command("tradeoff", path=given(), **law).to_dict()["points"])
+                mindahl.command("tradeoff", path=given(), **law).to_dict()["excitations"][0]["points"])
 
     def without_seconds(answer):
         return *answer[:3], [point["max_force_error"] for point in answer[3]]

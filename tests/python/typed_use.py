@@ -12,8 +12,8 @@ force: NDArray[np.float64] = mindahl.simulate(displacement, sigma=4e7, slip_forc
 state = mindahl.ContactState(sigma=4e7, slip_force=40.0)
 moved: float = state.move(1e-7)
 planned: mindahl.Report = mindahl.plan((displacement, force), want={"alpha": 0.01, "slip_force": "1%"})
-studied: str = mindahl.command("tradeoff", path="path.csv", sigma=4e7, slip_force=40.0,
-                                tolerance="1%").to_json()
+studied: str = mindahl.command("tradeoff", friction=(0.3, 0.01), normal_load=50.0,
+                                contact_radius=1e-4, compliance=4e-11, tolerance="1%").to_json()
 valid: dict[str, object] = mindahl.command("validate", cases=2).to_dict()
 runs: mindahl.BatchTable = mindahl.batch(["run1.csv", (displacement, force)], model="mindlin", strict=True)
 table: str = runs.to_csv()
