@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -24,6 +25,18 @@ using identification::Depth;
 using identification::FitOptions;
 using identification::FitResult;
 using identification::ParameterEstimate;
+
+constexpr std::array kFlags = {
+    CycleFlag{"not_converged", "the fit failed or did not converge; its values are not to be used"},
+    CycleFlag{"sigma_open", "the cycle does not determine sigma"},
+    CycleFlag{"alpha_open", "the cycle does not determine alpha"},
+    CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
+    CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
+    CycleFlag{"rows_missing",
+              "time jumps by a quarter of a cycle or more: what turned there is not seen"},
+    CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
+    CycleFlag{"glitches", "spikes or dropouts were left out"},
+};
 
 FitOptions OfSteadyCycles(FitOptions options) {
   if (options.initial_states.empty()) options.initial_states = {models::InitialState::kSteady};
@@ -70,6 +83,8 @@ void FillParameter(const FitResult& result, const std::string& name, CycleFit& f
 }
 
 }  // namespace
+
+std::span<const CycleFlag> CycleFlags() { return kFlags; }
 
 CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
@@ -119,6 +134,13 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
 
 namespace {
 
+// A torque about the contact has no contact radius, the last of them.
+static_assert(kCycleNumbers.back().name == "contact_radius");
+
+std::size_t CountOfNumbers(bool is_torsional) {
+  return kCycleNumbers.size() - (is_torsional ? 1 : 0);
+}
+
 template <typename Value>
 Value CellValue(std::string_view cell) {
   if (const auto value = NumberIn<Value>(cell)) return *value;
@@ -127,17 +149,21 @@ Value CellValue(std::string_view cell) {
 
 }  // namespace
 
-std::string CycleTableHeader() {
+std::string CycleTableHeader(bool is_torsional) {
+  const report::Units& units = report::UnitsOf(is_torsional);
   std::string header = "cycle,first_line,samples";
-  for (const auto& [name, unit] : kCycleNumbers) header += ',' + report::WithUnit(name, unit);
+  for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
+    header += fmt::format(",{}", column.name);
+    if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
+  }
   return header + ",accumulated_energy [J],flags\n";
 }
 
-std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
   fmt::memory_buffer row;
   const auto end = std::back_inserter(row);
   fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
-  for (const auto& number : fit.numbers) {
+  for (const auto& number : std::span(fit.numbers).first(CountOfNumbers(is_torsional))) {
     row.push_back(',');
     if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
@@ -145,21 +171,22 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   return fmt::to_string(row);
 }
 
-CycleFit ReadCycleTableRow(std::string_view line) {
+CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
+  const std::size_t numbers = CountOfNumbers(is_torsional);
   // cycle, first_line, samples; the numbers; accumulated_energy, flags.
-  constexpr std::size_t kColumns = 3 + kCycleNumbers.size() + 2;
-  if (cells.size() != kColumns) {
-    throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
+  const std::size_t columns = 3 + numbers + 2;
+  if (cells.size() != columns) {
+    throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
   CycleFit fit;
   fit.number = CellValue<std::size_t>(cells[0]);
   fit.first_line = CellValue<std::size_t>(cells[1]);
   fit.samples = CellValue<std::size_t>(cells[2]);
-  for (std::size_t k = 0; k < kCycleNumbers.size(); ++k) {
+  for (std::size_t k = 0; k < numbers; ++k) {
     if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
-  if (const std::string_view flags = cells[kColumns - 1]; !flags.empty()) {
+  if (const std::string_view flags = cells[columns - 1]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
   }
   return fit;

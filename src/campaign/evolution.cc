@@ -291,7 +291,7 @@ std::string RelativeChange(double from, double to) {
 }
 
 /// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
-std::string FromTo(double from, double to, std::string_view unit) {
+std::string FromTo(double from, double to, const std::string& unit) {
   const double largest = std::max(std::abs(from), std::abs(to));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
   const auto text = [&](double value) {
@@ -334,11 +334,12 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
 
 std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
-std::vector<Evolution> BeginEvolutions() {
+std::vector<Evolution> BeginEvolutions(bool is_torsional) {
   std::vector<Evolution> evolutions;
   for (const TrackedQuantity& quantity : kQuantities) {
     const std::string_view unit = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
-    evolutions.push_back({&quantity, unit.empty() ? "-" : unit});
+    evolutions.push_back(
+        {&quantity, report::UnitIn(report::UnitsOf(is_torsional), unit.empty() ? "-" : unit)});
   }
   return evolutions;
 }
@@ -424,7 +425,7 @@ std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions
   return panels;
 }
 
-io::PlotPanel FrettingLog(std::span<const Cycle> cycles) {
+io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
   io::PlotPanel panel;
   for (const Cycle& cycle : cycles) {
     io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number),
@@ -435,7 +436,9 @@ io::PlotPanel FrettingLog(std::span<const Cycle> cycles) {
                                          static_cast<double>(cycles.size() - 1);
     panel.series.push_back(std::move(loop));
   }
-  report::ScaleAxes(panel, "displacement", "m", "force", "N");
+  const report::Units& units = report::UnitsOf(is_torsional);
+  report::ScaleAxes(panel, is_torsional ? "angle" : "displacement", units.displacement,
+                    is_torsional ? "torque" : "force", units.force);
   return panel;
 }
 

@@ -39,6 +39,7 @@ struct TrackCommandOptions {
 struct TrackedTest {
   std::vector<std::string> files = {};
   std::string output = {};
+  bool is_torsional = false;
   std::size_t samples = 0;
   std::size_t cycles = 0;
   std::size_t unused_samples = 0;  // at the ends, part of no whole cycle
@@ -49,7 +50,7 @@ struct TrackedTest {
   std::size_t together = 1;                                    // cycles of a fit
   double energy = 0.0;                                         // [J] dissipated
   std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
-  std::vector<Evolution> evolutions = campaign::BeginEvolutions();
+  std::vector<Evolution> evolutions = {};
   std::vector<std::string> notes = {};  // what was assumed, one sentence each
 
   /// Adds the fit of the next row of the table.
@@ -110,6 +111,17 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
                           {"notes", test.notes}});
 }
 
+/// Returns the flags that a cycle has, with what they say.
+Json FlagRows(const TrackedTest& test) {
+  Json rows = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(flag.name);
+    if (found == test.flags.end()) continue;
+    rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};
+  }
+  return rows;
+}
+
 /// Returns what was read, fitted and dissipated, one sentence each.
 std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
@@ -120,8 +132,6 @@ std::vector<std::string> Facts(const TrackedTest& test) {
     facts.push_back(
         fmt::format("{} samples at the ends belong to no whole cycle", test.unused_samples));
   }
-  for (const auto& [flag, fits] : test.flags)
-    facts.push_back(fmt::format("{}: {} fits", flag, fits));
   for (const std::string& note : test.notes) facts.push_back("note: " + note);
   return facts;
 }
@@ -129,6 +139,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
 std::string ToText(const TrackedTest& test, const Json& quantities) {
   std::string text =
       fmt::format("{}\n{}\n", campaign::Headline(test.evolutions), fmt::join(Facts(test), "\n"));
+  if (!test.flags.empty()) text += '\n' + report::TableText(FlagRows(test));
   text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   if (changes.empty()) return text;
@@ -140,7 +151,7 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
   std::string figures;
   std::size_t count = 0;
   std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
-  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log));
+  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
   for (const io::PlotPanel& panel : panels) {
     figures += report::FigureHtml(
         fmt::format("evolution-{}", ++count), panel.y_label,
@@ -157,10 +168,13 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
           report::SectionHtml("Over the test",
                               report::ListHtml(Facts(test)) +
                                   report::TableHtml("first and last row of the table of cycles",
-                                                    QuantityRows(test)) +
-                                  report::ParagraphHtml("Errors assume that the model is adequate: "
-                                                        "check some cycles with mindahl fit.")) +
+                                                    QuantityRows(test))) +
           report::SectionHtml("Evolution", report::SideBySide(figures)) +
+          report::SectionHtml(
+              "What to mind",
+              report::TableHtml("cycles with a flag", FlagRows(test)) +
+                  report::ParagraphHtml("Errors assume that the model is adequate: check some "
+                                        "cycles with mindahl fit.")) +
           report::ProvenanceHtml(command));
 }
 
@@ -175,10 +189,10 @@ struct KeptCycles {
 
 /// @param visit  is given every fit of KeptCycles::fits
 /// @throws InputError where the file is no such table
-KeptCycles ReadKeptCycles(const std::string& path,
+KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
                           const std::function<void(const CycleFit&)>& visit) {
   std::ifstream file(path, std::ios::binary);
-  const std::string header = campaign::CycleTableHeader();
+  const std::string header = campaign::CycleTableHeader(is_torsional);
   std::string line;
   std::getline(file, line);
   if (line + '\n' != header) Refuse("its first line is another");
@@ -191,7 +205,7 @@ KeptCycles ReadKeptCycles(const std::string& path,
     batch += line + '\n';
     if (++rows % campaign::kBatch != 0) continue;
     for (const std::string_view row : PartsOf(kept.last, '\n')) {
-      if (!row.empty()) visit(campaign::ReadCycleTableRow(row));
+      if (!row.empty()) visit(campaign::ReadCycleTableRow(row, is_torsional));
     }
     kept.fits = rows - campaign::kBatch;
     kept.bytes += batch.size();
@@ -227,18 +241,21 @@ class TrackRun {
  private:
   void BeginSource(const io::RecordFile& layout) {
     test_.files.push_back(layout.name);
+    if (test_.files.size() == 1) {
+      test_.is_torsional = layout.is_torsional;
+      test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
+    }
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
-    if (!layout.is_torsional) return;
-    Refuse(
-        "{}: track follows a force, not a torque: fit parts of it with fit --select cycles=LO:HI",
-        layout.name);
+    if (layout.is_torsional == test_.is_torsional) return;
+    Refuse("{} and {} hold a force and a torque: track them apart", test_.files.front(),
+           layout.name);
   }
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
     const contact::KnownContact& known = options_.fit.contact.known;
     campaign::TrackOptions options = options_.track;
     options.fit = MakeCycleFitOptions(options_.fit);
-    options.compliance = contact::TangentialCompliance(known);
+    if (!test_.is_torsional) options.compliance = contact::TangentialCompliance(known);
     if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
     test_.gate = campaign::ChooseGate(head, options.fit);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
@@ -282,7 +299,8 @@ class TrackRun {
     if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error)
       return;
     try {
-      kept_ = ReadKeptCycles(options_.output, [this](const CycleFit& fit) { test_.Add(fit); });
+      kept_ = ReadKeptCycles(options_.output, test_.is_torsional,
+                             [this](const CycleFit& fit) { test_.Add(fit); });
     } catch (const InputError& fault) {
       Refuse("--resume: {} is no table of such cycles: {}", options_.output, fault.what());
     }
@@ -301,13 +319,13 @@ class TrackRun {
     std::string rows;
     for (const CycleFit& fit : fits) {
       test_.Add(fit);
-      rows += campaign::CycleTableRow(fit, test_.energy);
+      rows += campaign::CycleTableRow(fit, test_.energy, test_.is_torsional);
     }
     const bool is_kept = !kept_.last.empty();
     if (is_kept && std::exchange(kept_.last, {}) != rows) RefuseTable();
     if (!output_) {
       output_.emplace(options_.output, kept_.bytes);
-      if (kept_.bytes == 0) output_->Append(campaign::CycleTableHeader());
+      if (kept_.bytes == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
     }
     if (!is_kept) output_->Append(rows);
   }

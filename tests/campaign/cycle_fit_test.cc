@@ -191,6 +191,13 @@ TEST(CycleFitter, FitsCyclesTogetherWithSmallerErrors) {
   EXPECT_NEAR(*one["slip_force_error"] / *together["slip_force_error"], 3.0, 0.8);
 }
 
+TEST(CycleFitter, NamesEachFlagOnce) {
+  for (const CycleFlag& flag : CycleFlags()) {
+    EXPECT_EQ(std::ranges::count(CycleFlags(), flag.name, &CycleFlag::name), 1) << flag.name;
+    EXPECT_FALSE(flag.meaning.empty());
+  }
+}
+
 TEST(CycleFitter, HasEveryFactOfItsCycle) {
   Cycle cycle = FirstCycle();
   for (std::size_t i = 0; i < cycle.record.size(); ++i) {
@@ -287,18 +294,28 @@ TEST(CycleTable, RefusesMalformedRow) {
 }
 
 TEST(CycleTable, HasEachNumberInItsColumn) {
-  EXPECT_EQ(CycleTableHeader(),
+  EXPECT_EQ(CycleTableHeader(false),
             "cycle,first_line,samples,start_time [s],amplitude [m],peak_force [N],"
             "sliding_amplitude [m],half_gap [N],energy [J],energy_ratio,"
             "energy_friction_coefficient,normal_load [N],sigma [N/m],"
             "sigma_error [N/m],alpha,alpha_error,slip_force [N],slip_force_error [N],"
             "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,"
             "contact_radius [m],accumulated_energy [J],flags\n");
+  EXPECT_EQ(CycleTableHeader(true),
+            "cycle,first_line,samples,start_time [s],amplitude [rad],peak_force [N m],"
+            "sliding_amplitude [rad],half_gap [N m],energy [J],energy_ratio,"
+            "energy_friction_coefficient,normal_load [N m],"
+            "sigma [N m/rad],sigma_error [N m/rad],alpha,alpha_error,slip_force [N m],"
+            "slip_force_error [N m],force_offset [N m],force_offset_error [N m],rms [N m],"
+            "friction_coefficient,accumulated_energy [J],flags\n");
   double next = 0.5;
   CycleFit fit = Filled([&] { return next += 1; });
   EXPECT_EQ(CycleTableRow(fit, 21.5),
             "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
             "16.5,17.5,18.5,19.5,20.5,21.5,glitches alpha_open\n");
+  EXPECT_EQ(CycleTableRow(fit, 21.5, /*is_torsional=*/true),
+            "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
+            "16.5,17.5,18.5,19.5,21.5,glitches alpha_open\n");
 }
 
 }  // namespace

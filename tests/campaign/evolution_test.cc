@@ -9,8 +9,8 @@ namespace mindahl::campaign::evolution_test {
 namespace {
 
 /// A quantity by its name, described by hand.
-Evolution Of(std::string_view name, std::string_view unit, CourseDescription description) {
-  Evolution evolution{.unit = unit, .description = std::move(description)};
+Evolution Of(std::string_view name, std::string unit, CourseDescription description) {
+  Evolution evolution{.unit = std::move(unit), .description = std::move(description)};
   evolution.quantity = &*std::ranges::find(TrackedQuantities(), name, &TrackedQuantity::name);
   for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
     evolution.course.Add(cycle, cycle % 2 == 0 ? 5e7 : 4e7);
@@ -107,7 +107,7 @@ TEST(FrettingLog, HasALoopACycle) {
     cycle.record.displacement = {-2e-6, 2e-6, -2e-6};
     cycle.record.force = {-30.0, 30.0, -30.0};
   }
-  const io::PlotPanel panel = FrettingLog(cycles);
+  const io::PlotPanel panel = FrettingLog(cycles, /*is_torsional=*/false);
   EXPECT_EQ(panel.x_label, "displacement [µm]");
   EXPECT_EQ(panel.y_label, "force [N]");
   ASSERT_THAT(panel.series, SizeIs(2));
@@ -129,7 +129,7 @@ TEST(Evolutions, HoldEachQuantityOfACycleUnlessItIsOpen) {
   fit["contact_radius"] = 8.5;
   fit["rms"] = 2.0;
   const auto held = [&](const std::vector<std::string>& flags) {
-    std::vector<Evolution> evolutions = BeginEvolutions();
+    std::vector<Evolution> evolutions = BeginEvolutions(false);
     fit.flags = flags;
     AddTo(evolutions, fit);
     Describe(evolutions);

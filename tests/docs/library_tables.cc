@@ -63,10 +63,18 @@ Json CausesTable() {
   return rows;
 }
 
+Json FlagsTable() {
+  Json rows = Json::array();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    rows.push_back({{"name", flag.name}, {"meaning", flag.meaning}});
+  }
+  return rows;
+}
+
 /// Columns of the tables that commands write, by command.
 Json Columns() {
   Json columns = {{"track", Json::array()}, {"batch", Json::array()}};
-  std::istringstream header(campaign::CycleTableHeader());
+  std::istringstream header(campaign::CycleTableHeader(/*is_torsional=*/false));
   for (std::string name; header >> std::ws && std::getline(header, name, ',');) {
     columns["track"].push_back(name.substr(0, name.find('\n')));
   }
@@ -83,6 +91,7 @@ int main() {
   const mindahl::report::Json tables = {{"terms", mindahl::TermsTable()},
                                         {"findings", mindahl::FindingsTable()},
                                         {"causes", mindahl::CausesTable()},
+                                        {"flags", mindahl::FlagsTable()},
                                         {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

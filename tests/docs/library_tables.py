@@ -120,12 +120,16 @@ def causes_table(tables, _, kept):
                  in_page_order(rows, kept))
 
 
+def flags_table(tables, _, __):
+    return table(["flag", "meaning"], [[code(row["name"]), cell(row["meaning"])] for row in tables["flags"]])
+
+
 def columns_list(tables, command, _):
     return textwrap.fill(", ".join(map(code, tables["columns"][command[0]])), 116, break_long_words=False,
                          break_on_hyphens=False) + "\n"
 
 
-TABLES = {"fields": fields_table, "columns": columns_list, "terms": terms_table, "thresholds": thresholds_table,
+TABLES = {"fields": fields_table, "flags": flags_table, "columns": columns_list, "terms": terms_table, "thresholds": thresholds_table,
           "findings": findings_table, "causes": causes_table}
 
 # --- pages, against the library -------------------------------------------------------

@@ -17,7 +17,7 @@ namespace mindahl::campaign {
 /// A column of numbers of the table of cycles.
 struct CycleNumber {
   std::string_view name;
-  std::string_view unit;  ///< "" for a pure number
+  std::string_view unit;  ///< in a record of forces; "" for a pure number
 };
 
 /// All of them, in the order of the table.
@@ -43,7 +43,7 @@ inline constexpr auto kCycleNumbers = std::to_array<CycleNumber>({
     {"force_offset_error", "N"},
     {"rms", "N"},
     {"friction_coefficient", ""},  // Tc/N, where the load is known and Tc identifiable
-    {"contact_radius", "m"},       // σG*/8, where the compliance is known
+    {"contact_radius", "m"},       // σG*/8, where the compliance is known; never of a torque
 });
 
 /// Returns the place of a column among them; their number for a name that no column has.
@@ -60,7 +60,7 @@ struct CycleFit {
   std::size_t samples = 0;
   /// Numbers of the table's columns, each empty where it is not known.
   std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
-  /// Holds the warnings about this cycle, sigma_open and others: docs/track.md.
+  /// Holds the warnings about this cycle, each one of CycleFlags().
   std::vector<std::string> flags{};
 
   /// Return the number of a column: fit["sigma"].
@@ -74,6 +74,15 @@ struct CycleFit {
     return std::ranges::find(flags, flag) != flags.end();
   }
 };
+
+/// Names a flag of a cycle and explains it in a sentence.
+struct CycleFlag {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// Returns every flag that a cycle may have: not_converged, sigma_open, …
+std::span<const CycleFlag> CycleFlags();
 
 /// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at
 /// Depth::kErrors, so that each has the minimum that a fit of it alone has, to the solver's
@@ -95,16 +104,18 @@ class CycleFitter {
 };
 
 /// Returns the first line of a table of cycles: the columns with their units.
-std::string CycleTableHeader();
+/// @param is_torsional  of torques against angles
+std::string CycleTableHeader(bool is_torsional);
 
 /// Returns one line of it (RFC 4180, LF): numbers with as many digits as read back the same double,
 /// an empty cell for what is not known, flags separated by blanks.
 /// @param accumulated_energy  [J] dissipated up to the end of the cycle
-std::string CycleTableRow(const CycleFit& fit, double accumulated_energy);
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy,
+                          bool is_torsional = false);
 
 /// Returns what a line of the table has of a fit: the inverse of CycleTableRow().
 /// @param line  without its end
 /// @throws InputError where it is no line of such a table, saying why
-CycleFit ReadCycleTableRow(std::string_view line);
+CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional = false);
 
 }  // namespace mindahl::campaign

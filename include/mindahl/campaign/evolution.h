@@ -95,14 +95,14 @@ std::span<const TrackedQuantity> TrackedQuantities();
 /// The time history of a quantity and what is said of it.
 struct Evolution {
   const TrackedQuantity* quantity = nullptr;
-  std::string_view unit = {};
+  std::string unit = {};  ///< in the record
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
 };
 
 /// Returns the evolutions of all of them before the first cycle.
-std::vector<Evolution> BeginEvolutions();
+std::vector<Evolution> BeginEvolutions(bool is_torsional);
 
 /// Adds a cycle to the time histories, in memory that their number does not change; none of one
 /// that did not converge, nor of a quantity that it leaves open.
@@ -128,6 +128,6 @@ std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions
 
 /// Returns loops over each other, each named by its cycle.
 /// @param cycles  records [m], [N]
-io::PlotPanel FrettingLog(std::span<const Cycle> cycles);
+io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional);
 
 }  // namespace mindahl::campaign
