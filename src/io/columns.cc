@@ -77,15 +77,6 @@ std::string WordsIn(std::string_view name) {
   return words.back() == ' ' ? words : words + ' ';
 }
 
-/// Returns words in lower case, the letters of Latin-1 too.
-std::string InLowerCase(std::string words) {
-  for (std::size_t k = 1; k < words.size(); ++k) {
-    const bool is_latin = words[k - 1] == '\xC3' && words[k] <= '\x9E' && words[k] != '\x97';
-    if (IsCapital(words[k]) || is_latin) words[k] = static_cast<char>(words[k] + 0x20);
-  }
-  return words;
-}
-
 std::size_t CountWords(std::string_view words) {
   return static_cast<std::size_t>(std::ranges::count(words, ' ')) - 1;
 }
@@ -103,26 +94,20 @@ std::size_t MatchEnd(std::string_view entry, std::string_view words) {
   return at == std::string_view::npos ? 0 : at + pattern.size();
 }
 
-/// Returns the word that a name is behind the path of an instrument, "AI 1/x", remarks aside; ""
-/// where it has several.
-std::string OnlyWord(std::string_view name) {
-  for (std::size_t at = name.size(); at-- > 1;) {
-    const bool separates = std::string_view("/.:|").find(name[at - 1]) != std::string_view::npos;
-    if (!separates || !IsLetter(name[at])) continue;
-    name.remove_prefix(at);
-    break;
-  }
-  const std::string words = WordsIn(name);
+/// Returns the words of a name as they are written: remarks aside, and once for "U:U1".
+std::string WithoutRemarks(const std::string& words) {
   std::vector<std::string_view> all = PartsOf(Trimmed(words), ' ');
   std::erase_if(all, [](std::string_view word) { return Lists(kRemarks, LowerCase(word)); });
-  return all.size() == 1 ? std::string(all.front()) : "";
+  all.erase(std::ranges::unique(all).begin(), all.end());
+  return fmt::format("{}", fmt::join(all, " "));
 }
 
 /// Finds the best word of a name: the entry of most words, of these the last in the name, of these
 /// that of the lowest rank. One letter is a name by itself.
 void FindWord(Column& column) {
-  const std::string words = InLowerCase(WordsIn(column.name));
-  const std::string only = OnlyWord(column.name);
+  const std::string written = WordsIn(column.name);
+  const std::string words = LowerCase(written);
+  const std::string only = WithoutRemarks(written);
   std::tuple<std::size_t, std::size_t, int> best{0, 0, 0};
   for (const WordRow& row : kWords) {
     for (const std::string_view entry : PartsOf(row.words, '|')) {
@@ -140,6 +125,7 @@ void FindWord(Column& column) {
       column.word = entry;
       std::tie(column.role, column.rank, column.is_angular) =
           std::tie(row.role, row.rank, row.is_angular);
+      column.is_coefficient = row.rank == kCoefficient;
     }
   }
   column.is_lesser = std::ranges::any_of(PartsOf(kLesserWords, '|'),
@@ -321,12 +307,36 @@ Columns::Columns(const CsvTable& table) : table_(table) {
   for (const TableColumn& of : table.columns) {
     Column& added = emplace_back(ReadName(of.name));
     Observe(of.values, added);
-    if (added.unit.empty()) added.unit = WithoutBrackets(of.unit);
+    const std::string_view below = WithoutBrackets(of.unit);
+    if (added.unit.empty()) {
+      added.unit = below;
+    } else if (!below.empty() && below != added.unit) {
+      added.unit += fmt::format(" or {}", below);
+    }
     // "millis"
     const bool is_unit = added.names(Role::kTime) && DimensionOf(added.name) == Dimension::kTime;
     if (added.unit.empty() && is_unit) added.unit = added.name;
     added.dimension = DimensionOf(added.unit);
     added.is_clock = of.is_clock;
+  }
+  FindLoadOfFriction();
+}
+
+void Columns::FindLoadOfFriction() {
+  constexpr double kGreatestCoefficient = 2;
+  const bool has_force = std::ranges::any_of(
+      *this, [](const Column& of) { return of.dimension == Dimension::kForce; });
+  bool has_friction = false;
+  for (Column& of : *this) {
+    const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
+                        of.greatest < kGreatestCoefficient;
+    if (may_be && (of.word == "friction" || of.word == "f")) of.is_coefficient = true;
+    has_friction = has_friction || of.is_coefficient || (of.names(Role::kForce) && of.rank == 0);
+  }
+  for (Column& of : *this) {
+    const bool is_load =
+        of.names(Role::kForce) && of.rank == 2 && !of.is_angular && of.other_words == 0;
+    if (has_friction && is_load) of.role = Role::kNormalLoad;
   }
 }
 
@@ -344,15 +354,6 @@ std::optional<std::size_t> Columns::Named(std::string_view name, Role role) cons
     if (found) return found;
   }
   return std::nullopt;
-}
-
-std::string Columns::UnitOf(std::size_t column, Role role) const {
-  const std::string& unit = at(column).unit;
-  const std::string_view of_row = WithoutBrackets(table_.columns[column].unit);
-  if (of_row.empty() || of_row == unit) return unit;
-  Refuse(
-      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit with {} '{} [{}]'",
-      Header(), Label(column), unit, of_row, RulesOf(role).option, column + 1, unit);
 }
 
 std::string Columns::Label(std::size_t column) const {

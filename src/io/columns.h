@@ -14,7 +14,7 @@
 namespace mindahl::io {
 
 /// Names what a column may be.
-enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther, kFrictionCoefficient };
+enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther };
 
 /// Holds what is asked of the columns of a role, and where they are in a record.
 struct RoleRules {
@@ -38,6 +38,7 @@ struct Column {
   int rank = 0;
   bool is_angular = false;
   bool is_lesser = false;       // commanded, raw or a statistic
+  bool is_coefficient = false;  // of friction, by its name or as it is beside a load
   std::size_t other_words = 0;  // in the name
   // From the numbers in its rows:
   bool is_numeric = false;             // half of its rows or more have one
@@ -80,7 +81,8 @@ std::optional<Dimension> DimensionOf(std::string_view symbol);
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 
-/// The columns of a table, for choices and messages.
+/// The columns of a table, for choices and messages. A unit in the name and another below it make
+/// one that is none.
 class Columns : public std::vector<Column> {
  public:
   explicit Columns(const CsvTable& table);
@@ -89,9 +91,10 @@ class Columns : public std::vector<Column> {
   /// Returns the column of a name, from 0; empty where there is none.
   /// @throws InputError where it is that of several
   [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
-  /// Returns the unit that the file states for a column, "" when it states none.
-  /// @throws InputError where header and units row state two different units
-  [[nodiscard]] std::string UnitOf(std::size_t column, Role role) const;
+  /// Returns the place of one of them, from 0.
+  [[nodiscard]] std::size_t IndexOf(const Column& column) const {
+    return static_cast<std::size_t>(&column - data());
+  }
   /// "'x [mm]' (column 2)", or "column 2" without a header.
   [[nodiscard]] std::string Label(std::size_t column) const;
   /// "the columns are 'x' (1), 'F' (2)".
@@ -102,6 +105,10 @@ class Columns : public std::vector<Column> {
   [[noreturn]] void ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const;
 
  private:
+  /// Takes a friction without a unit beside a load for a coefficient, and beside a friction force
+  /// or a coefficient what is called a load for the normal one.
+  void FindLoadOfFriction();
+
   const CsvTable& table_;
 };
 
@@ -131,9 +138,6 @@ struct Quantity {
     for (const auto& [column, weight] : terms) value += weight * table.columns[column].values[row];
     return value;
   }
-  /// Returns its values in SI units, one a row.
-  /// @throws InputError where one is missing
-  [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
 };
 
 /// Reads a text of RecordColumns. One that is a name as a whole is that column; in a sum, a column

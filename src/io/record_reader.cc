@@ -21,15 +21,14 @@ namespace {
 void RequireNoSignBit(const Columns& columns, const Quantity& quantity) {
   constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
-  double below = -1.0;
-  double above = 0.0;
+  const Column& of = columns[column];
+  if (of.least < 0 || of.least >= kBit / 2 || of.greatest < kBit || of.greatest >= 2 * kBit) return;
+  double below = 0.0;
   for (const double value : columns.table().columns[column].values) {
-    if (!std::isfinite(value)) continue;
-    if (value < 0 || value >= 2 * kBit || value != std::floor(value)) return;
-    double& greatest = value < kBit ? below : above;
-    greatest = std::max(greatest, value);
+    if (std::isfinite(value) && value != std::floor(value)) return;
+    if (value < kBit) below = std::max(below, value);
   }
-  if (below < 0 || above < kBit || below >= kBit / 2) return;
+  if (below >= kBit / 2) return;
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
       "write signed numbers, {} - value where the value is {} or more",
@@ -209,7 +208,7 @@ void AddCovariates(const Columns& columns, const std::vector<std::string>& choic
         std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
     if (values.empty() || !is_whole || (!changes && !may_be_constant)) return false;
     file.record.covariates.push_back(
-        {.name = name, .unit = columns.UnitOf(column, Role::kOther), .values = std::move(values)});
+        {.name = name, .unit = columns[column].unit, .values = std::move(values)});
     is_read[column + 1] = true;
     return true;
   };
@@ -233,54 +232,22 @@ void AddCovariates(const Columns& columns, const std::vector<std::string>& choic
   }
 }
 
-/// Returns the time of a table, by which another is joined to it, where it has one.
-std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) {
-  const Columns columns(table);
-  Quantity time = ReadQuantity(given, columns, Role::kTime);
-  const std::optional<std::size_t> best = BestColumn(columns, Role::kTime);
-  if (time.terms.empty() && !best) return std::nullopt;
-  if (time.terms.empty()) time.terms = {{*best}};
-  std::vector<std::string> notes;
-  const double offset = time.offset;
-  FindUnitOf(time, columns, false, notes);
-  time.offset = offset;  // stamps are of one clock
-  return time;
-}
-
-/// Appends the columns of another file of the same test: at the times of the first, by straight
-/// lines, where both have a time, else row by row.
-void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& given_time) {
-  const std::optional<Quantity> time = TimeOf(table, given_time);
-  const std::optional<Quantity> time_of_other = TimeOf(other, "");
-  std::vector<double> from;
-  if (time && time_of_other) from = time_of_other->Numbers(other);
-  const bool by_time = !from.empty() && std::ranges::is_sorted(from);
-  if (!by_time && table.rows() != other.rows()) {
-    Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
+/// Appends the columns of another file of the same test, row by row.
+void AddColumnsOf(CsvTable& table, const CsvTable& other) {
+  if (table.rows() != other.rows()) {
+    Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
            table.file, table.rows(), other.file, other.rows());
   }
-  for (const TableColumn& column : other.columns) {
-    TableColumn& added = table.columns.emplace_back(column);
-    if (!by_time || column.values.empty()) continue;
-    added.values.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-      const double to = time->unit.ToSi(time->ValueIn(table, row));
-      const auto next = std::ranges::lower_bound(from, to);
-      const auto k = static_cast<std::size_t>(next - from.begin());
-      if (next != from.end() && *next == to) {
-        added.values[row] = column.values[k];
-      } else if (k > 0 && next != from.end()) {
-        added.values[row] = std::lerp(column.values[k - 1], column.values[k],
-                                      (to - from[k - 1]) / (from[k] - from[k - 1]));
-      } else if (added.missing.empty()) {
-        added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
-                                    table.lines[row], other.file);
-      }
-    }
+  const auto time = BestColumn(Columns(table), Role::kTime);
+  const auto its_time = BestColumn(Columns(other), Role::kTime);
+  if (time && its_time && table.columns[*time].values != other.columns[*its_time].values) {
+    Refuse("--with: {} and {} have different times: give the values of one at those of the other",
+           table.file, other.file);
   }
+  table.columns.insert(table.columns.end(), other.columns.begin(), other.columns.end());
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
-  table.notes.push_back(fmt::format("{}: its columns follow those of {}, {}", other.file,
-                                    table.file, by_time ? "at its times" : "row by row"));
+  table.notes.push_back(
+      fmt::format("{}: its columns follow those of {}, row by row", other.file, table.file));
   table.header_line = std::max<std::size_t>(table.header_line, 1);
 }
 
@@ -304,7 +271,7 @@ RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& asked) {
   CsvTable table = ReadCsvTable(path, asked.encoding);
   if (!asked.with.empty()) {
-    AddColumnsOf(table, ReadCsvTable(asked.with, asked.encoding), asked.time);
+    AddColumnsOf(table, ReadCsvTable(asked.with, asked.encoding));
   }
   RecordFile file = RecordIn(table, asked);
   file.name = path.string();
@@ -350,7 +317,12 @@ std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
   const Column& first = columns[displacement.first_column()];
   std::vector<std::string> notes;  // SI is the documented default here
   FindUnitOf(displacement, columns, first.IsAngular(displacement.given_unit) == true, notes);
-  return displacement.Numbers(table);
+  for (const auto& term : displacement.terms) static_cast<void>(table.Numbers(term.column));
+  std::vector<double> values(table.rows());
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    values[row] = displacement.unit.ToSi(displacement.ValueIn(table, row));
+  }
+  return values;
 }
 
 struct RecordStream::State {

@@ -42,7 +42,7 @@ int EvidenceFor(const Column& column, Role role) {
   }
   if (is_named) {
     const int others = std::min<int>(static_cast<int>(column.other_words), kStep - 1);
-    const bool may_be = column.unit.empty() || is_of_unit;
+    const bool may_be = (column.unit.empty() || is_of_unit) && !column.is_coefficient;
     found += may_be ? kWord - kStep * column.rank - others : role <= Role::kForce ? 1 : 0;
   }
   return found > kLesser && column.is_lesser ? found - kLesser : found;
@@ -79,17 +79,16 @@ class RoleAssigner {
     }
     const std::array is_found = {IsMissing(kPair[0]), IsMissing(kPair[1])};
     FindPair();
-    if (!asked.sample_rate) TakeTime();
+    if (!asked.sample_rate) TakeBest(Role::kTime);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     for (const std::string& covariate : asked.covariates) {
       taken_[ReadCovariate(covariate, columns_)] = true;
     }
-    if (has_load) TakeLoad();
+    if (has_load) TakeBest(Role::kNormalLoad);
     TakeLeft();
     for (const std::size_t k : {0U, 1U}) {
       if (is_found[k]) RequireMoving(kPair[k], kPair[1 - k]);
     }
-    RequireNoCoefficient(is_found[1]);
     const bool is_torsional = RequireOneKind();
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
     for (Quantity& quantity : roles_) FindUnitOf(quantity, columns_, is_torsional, notes_);
@@ -112,71 +111,48 @@ class RoleAssigner {
   /// Takes the column with the best evidence, where none is given.
   void TakeBest(Role role) {
     if (!IsMissing(role)) return;
-    if (const auto found = BestColumn(columns_, role, taken_)) return Take(*found, role);
-    if (!Of(role).given_unit.empty()) ThrowNoColumn(role);
-  }
-
-  /// Takes the time; of a stamp of whole seconds, "header.stamp.sec", with that of its nanoseconds.
-  void TakeTime() {
-    const bool is_given = !IsMissing(Role::kTime);
-    TakeBest(Role::kTime);
-    if (is_given || IsMissing(Role::kTime)) return;
-    const std::string stamp = LowerCase(ColumnOf(Role::kTime).name);
-    const std::size_t at = stamp.rfind("sec");
-    for (const std::string_view prefix : {"nano", "n"}) {
-      if (at == stamp.npos) return;
-      const auto column = columns_.Named(std::string(stamp).insert(at, prefix), Role::kTime);
-      if (column && !taken_[*column]) return Of(Role::kTime).terms.push_back({*column, 1e-9});
+    const std::optional<std::size_t> best = BestColumn(columns_, role, taken_);
+    if (!best && !Of(role).given_unit.empty()) ThrowNoColumn(role);
+    if (!best) return;
+    Take(*best, role);
+    const std::size_t next = *best + 1;
+    if (role == Role::kNormalLoad && columns_[*best].greatest < 0) {
+      Of(role).terms.front().weight = -1.0;
+      Note("normal load {} is negative throughout: its magnitude is taken", columns_.Label(*best));
+    } else if (role == Role::kTime && next < taken_.size() && columns_[*best].unit == "sec" &&
+               LowerCase(columns_.table().columns[next].name).ends_with("nanosec")) {
+      Of(role).terms.push_back({next, 1e-9});  // of the same stamp
+      Of(role).given_unit = "s";
+      taken_[next] = true;
     }
   }
 
-  /// Takes the normal load; beside what is a friction force by its name a "load" is one too. Of one
-  /// that is negative throughout the magnitude is taken.
-  void TakeLoad() {
-    TakeBest(Role::kNormalLoad);
-    const bool is_beside_friction = !IsMissing(Role::kForce) &&
-                                    ColumnOf(Role::kForce).names(Role::kForce) &&
-                                    ColumnOf(Role::kForce).rank == 0;
-    for (std::size_t column = 0; column < taken_.size() && is_beside_friction; ++column) {
-      const Column& of = columns_[column];
-      const bool is_load = of.names(Role::kForce) && of.rank == 2 && !of.is_angular &&
-                           of.other_words == 0 && of.is_numeric &&
-                           (of.unit.empty() || of.dimension == Dimension::kForce);
-      if (is_load && !taken_[column] && IsMissing(Role::kNormalLoad)) {
-        Take(column, Role::kNormalLoad);
-      }
-    }
-    Quantity& load = Of(Role::kNormalLoad);
-    if (!load.is_plain() || ColumnOf(Role::kNormalLoad).greatest >= 0) return;
-    load.terms.front().weight = -1.0;
-    Note("normal load {} is negative throughout: its magnitude is taken",
-         columns_.Label(load.first_column()));
-  }
-
-  /// A column that may be the displacement, or the force; or none.
-  struct Candidate {
-    std::size_t column;
-    int score = 0;  // evidence, and whether it goes to and fro
-    std::optional<bool> is_angular = {};
-  };
-  /// A displacement and a force.
-  struct Pair {
-    int score = std::numeric_limits<int>::min();
-    std::array<std::size_t, 2> columns = {}, rivals = {};  // of the same score
+  /// The best column for the displacement, or the force, and its score: evidence, and whether it
+  /// goes to and fro.
+  struct Choice {
+    std::optional<std::size_t> column = {};
+    int score = 0;
+    std::optional<std::size_t> rival = {};  // of the same score
+    bool moves = false;
   };
 
-  std::vector<Candidate> CandidatesFor(Role role) {
-    std::vector<Candidate> candidates;
+  /// @param turns  whether it is to be an angle or a torque, where that matters
+  /// @param other  the column of the other role
+  Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
+    Choice best;
     for (std::size_t column = 0; column < columns_.size(); ++column) {
       const Column& of = columns_[column];
+      const bool is_given = !IsMissing(role) && column == Of(role).first_column();
       const int evidence = EvidenceFor(of, role);
-      const bool is_free = IsMissing(role) && !taken_[column] && of.is_numeric && evidence > 0;
-      if (!is_free && (IsMissing(role) || column != Of(role).first_column())) continue;
-      candidates.push_back({column, evidence + (of.goes_to_and_fro ? kMoving : 0),
-                            of.IsAngular(Of(role).given_unit)});
+      const bool is_free =
+          IsMissing(role) && !taken_[column] && column != other && of.is_numeric && evidence > 0;
+      const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
+      if (!(is_given || is_free) || (turns && is_angular && is_angular != turns)) continue;
+      const int score = evidence + (of.goes_to_and_fro ? kMoving : 0);
+      if (score == best.score) best.rival = column;
+      if (score > best.score || is_given) best = {column, score, {}, of.goes_to_and_fro};
     }
-    if (IsMissing(role)) candidates.push_back({columns_.size()});
-    return candidates;
+    return best;
   }
 
   /// Takes the displacement and the force of the most evidence: before all others two that go
@@ -184,49 +160,43 @@ class RoleAssigner {
   void FindPair() {
     constexpr int kWeak = 60;  // two columns by words that are hardly any
     constexpr int kMixed = 1'000'000;
-    enum Kind { kLinear, kAngular, kMixture };
-    const std::size_t none = columns_.size();
-    std::array<Pair, 3> best;  // of each kind
-    const std::vector<Candidate> forces = CandidatesFor(Role::kForce);
-    for (const Candidate& x : CandidatesFor(Role::kDisplacement)) {
-      for (const Candidate& force : forces) {
-        if (x.column == force.column && x.column != none) continue;
-        const bool is_mixed = x.is_angular && force.is_angular && x.is_angular != force.is_angular;
-        const bool is_angular = x.is_angular.value_or(force.is_angular.value_or(false));
-        const bool is_whole = x.column != none && force.column != none;
-        const int score =
-            x.score + force.score - (is_mixed ? kMixed : 0) - (is_whole ? 0 : 2 * kMixed);
-        Pair& pair = best.at(is_mixed ? kMixture : is_angular ? kAngular : kLinear);
-        const std::array columns = {x.column, force.column};
-        if (score > pair.score) pair = {score, columns, columns};
-        if (score == pair.score) pair.rivals = columns;
-      }
+    struct Pair {
+      std::array<Choice, 2> of;
+      int score = 0;
+    };
+    std::array<Pair, 3> pairs;
+    const std::array<std::optional<bool>, 3> kinds = {false, true, std::nullopt};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      auto& [x, force] = pairs[k].of;
+      x = Best(kPair[0], kinds[k]);
+      force = Best(kPair[1], kinds[k], x.column);
+      pairs[k].score = x.score + force.score - (kinds[k] ? 0 : kMixed) -
+                       (x.column && force.column ? 0 : 2 * kMixed);
     }
-    const auto& [line, turn, mixture] = best;
+    const auto& [line, turn, any] = pairs;
     if (std::min(line.score, turn.score) > kWeak && std::abs(line.score - turn.score) < kMoving &&
-        line.columns[0] != turn.columns[0] && line.columns[1] != turn.columns[1]) {
-      columns_.ThrowAmbiguous(Role::kDisplacement, line.columns[0], turn.columns[0]);
+        line.of[0].column != turn.of[0].column && line.of[1].column != turn.of[1].column) {
+      columns_.ThrowAmbiguous(Role::kDisplacement, *line.of[0].column, *turn.of[0].column);
     }
-    const Pair& pair = *std::ranges::max_element(best, {}, &Pair::score);
+    const Pair& pair = *std::ranges::max_element(pairs, {}, &Pair::score);
     for (const std::size_t k : {0U, 1U}) {
-      const auto [column, rival] = std::pair(pair.columns[k], pair.rivals[k]);
-      if (rival != column) columns_.ThrowAmbiguous(kPair[k], column, rival);
-      if (!IsMissing(kPair[k]) || column == none) continue;
-      NoteThatItMoves(column, kPair[k]);
-      Take(column, kPair[k]);
+      const auto& [column, score, rival, moves] = pair.of[k];
+      if (!column || !IsMissing(kPair[k])) continue;
+      if (rival) columns_.ThrowAmbiguous(kPair[k], *column, *rival);
+      if (moves) NoteThatItMoves(*column, kPair[k]);
+      Take(*column, kPair[k]);
     }
   }
 
   /// Says so where a column that has as much evidence of a role is not taken, as it rests.
   void NoteThatItMoves(std::size_t taken, Role role) {
-    const int evidence = EvidenceFor(columns_[taken], role);
-    for (std::size_t column = 0; column < taken_.size(); ++column) {
-      const Column& of = columns_[column];
-      const bool rests = columns_[taken].goes_to_and_fro && !of.goes_to_and_fro;
-      if (!rests || taken_[column] || !of.is_numeric || EvidenceFor(of, role) < evidence) continue;
-      return Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name,
-                  columns_.Label(taken), columns_.Label(column));
-    }
+    const auto resting = std::ranges::find_if(columns_, [&](const Column& of) {
+      return !of.goes_to_and_fro && of.is_numeric && !taken_[columns_.IndexOf(of)] &&
+             EvidenceFor(of, role) >= EvidenceFor(columns_[taken], role);
+    });
+    if (resting == columns_.end()) return;
+    Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name, columns_.Label(taken),
+         columns_.Label(columns_.IndexOf(*resting)));
   }
 
   /// Gives what no name or unit decides to the columns of numbers that are left, if they are as
@@ -234,52 +204,21 @@ class RoleAssigner {
   void TakeLeft() {
     std::vector<Role> missing(kPair.begin(), kPair.end());
     std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
-    std::vector<std::size_t> left;
+    if (missing.empty()) return;
+    std::vector<std::size_t> left, moving;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const Column& of = columns_[column];
       const bool is_unknown = of.unit.empty() && of.word.empty() && !of.is_clock;
-      if (!taken_[column] && is_unknown && of.is_numeric) left.push_back(column);
+      if (taken_[column] || !is_unknown || !of.is_numeric) continue;
+      left.push_back(column);
+      if (of.trend == 0 && of.greatest > of.least) moving.push_back(column);
     }
-    if (left.size() > missing.size()) {
-      std::erase_if(left, [&](std::size_t column) {
-        return columns_[column].trend != 0 || !(columns_[column].greatest > columns_[column].least);
-      });
-    }
-    if (missing.empty()) return;
+    if (left.size() > missing.size()) left = moving;
     if (left.size() != missing.size()) ThrowNoColumn(missing.front());
     for (std::size_t k = 0; k < left.size(); ++k) {
       Take(left[k], missing[k]);
       Note("no column name is recognised as {}: taken from {}{}", RulesOf(missing[k]).name,
            columns_.Label(left[k]), left.size() > 1 ? ", of two in their order" : "");
-    }
-  }
-
-  /// Refuses a coefficient of friction as the force: one by its name, or a friction without a unit
-  /// and below 2 beside a load in newton; and that load, where it never changes its sign. Whoever
-  /// gives a unit is believed.
-  void RequireNoCoefficient(bool finds_force) {
-    constexpr double kGreatest = 2;
-    const Quantity& force = Of(Role::kForce);
-    if (!force.given_unit.empty() || force.is_scaled) return;
-    const Column& taken = ColumnOf(Role::kForce);
-    const auto loads = std::ranges::count_if(columns_, [](const Column& of) {
-      return of.dimension == Dimension::kForce || of.names(Role::kNormalLoad);
-    });
-    const bool is_load = finds_force && (taken.least > 0 || taken.greatest < 0) && loads < 2;
-    for (const Column& of : columns_) {
-      const bool is_named = of.names(Role::kFrictionCoefficient);
-      const bool may_be = (of.word == "friction" || of.word == "f") && of.unit.empty() &&
-                          of.least > -kGreatest && of.greatest < kGreatest;
-      const bool is_taken = &of == &taken;
-      if (!(is_taken ? is_named || (may_be && loads > 0) : is_load && (is_named || may_be))) {
-        continue;
-      }
-      const auto column = static_cast<std::size_t>(&of - columns_.data());
-      Refuse(
-          "{}:{}: {} is a coefficient of friction, or looks like one, and no force: choose the "
-          "force with --force, or multiply by the normal load, where that is 50 N by --force "
-          "'#{}*50 [N]'; if it is a force, say so by --force '{} [N]'",
-          columns_.Header(), column + 1, columns_.Label(column), column + 1, column + 1);
     }
   }
 
@@ -340,6 +279,16 @@ std::size_t Numbered(std::size_t number, const Columns& columns, const std::stri
          columns.size() == 1 ? "" : "s");
 }
 
+/// Returns the column of a name, or of a number behind '#'.
+std::size_t ColumnIn(std::string_view name, const Columns& columns, const std::string& where,
+                     Role role) {
+  const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
+  if (number) return Numbered(*number, columns, where);
+  if (const auto named = columns.Named(name, role)) return *named;
+  Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
+         columns.Listing());
+}
+
 /// Reads a sum of products, each of numbers and at most one column.
 void ReadSum(std::string_view rest, const Columns& columns, const std::string& where,
              Quantity& sum) {
@@ -352,56 +301,37 @@ void ReadSum(std::string_view rest, const Columns& columns, const std::string& w
         where);
   };
   const auto take = [&](std::size_t size) { rest = Trimmed(rest.substr(size)); };
-  do {
+  while (!rest.empty()) {
     double factor = 1.0;
     for (; rest.starts_with('-') || rest.starts_with('+'); take(1)) {
       if (rest.front() == '-') factor = -factor;
     }
     std::optional<std::size_t> column;
-    for (;; take(1)) {
+    for (bool goes_on = true; goes_on;) {
       double number = 0.0;
-      const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+      const char* const stop = std::from_chars(rest.data(), rest.data() + rest.size(), number).ptr;
       auto size = static_cast<std::size_t>(stop - rest.data());
-      const std::string_view after = Trimmed(rest.substr(size));
-      const bool ends = after.empty() || kOperators.find(after.front()) != after.npos;
-      if (error == std::errc() && size > 0 && ends) {
+      const std::string_view behind = Trimmed(rest.substr(size)).substr(0, 1);
+      if (size > 0 && (behind.empty() || kOperators.find(behind) != behind.npos)) {
         factor *= number;
         sum.is_scaled = true;
       } else {
         size = std::min(rest.find_first_of(kOperators), rest.size());
-        const std::string_view name = Trimmed(rest.substr(0, size));
-        require(!name.empty() && !column);
-        const auto behind = NumberIn<std::size_t>(Trimmed(name.substr(1)));
-        column = name.starts_with('#') && behind ? Numbered(*behind, columns, where)
-                                                 : columns.Named(name, sum.role);
-        if (!column) {
-          Refuse("{}: no column is called '{}' (for the {}): {}", where, name,
-                 RulesOf(sum.role).name, columns.Listing());
-        }
+        require(size > 0 && !column);
+        column = ColumnIn(Trimmed(rest.substr(0, size)), columns, where, sum.role);
       }
       take(size);
-      if (!rest.starts_with('*')) break;
+      goes_on = rest.starts_with('*');
+      if (goes_on) take(1);
     }
     require(std::isfinite(factor) && (!column || factor != 0));
-    if (column) {
-      sum.terms.push_back({*column, factor});
-    } else {
-      sum.offset += factor;
-    }
-  } while (!rest.empty());
+    if (column) sum.terms.push_back({*column, factor});
+    if (!column) sum.offset += factor;
+  }
   require(!sum.terms.empty());
 }
 
 }  // namespace
-
-std::vector<double> Quantity::Numbers(const CsvTable& table) const {
-  for (const Term& term : terms) static_cast<void>(table.Numbers(term.column));
-  std::vector<double> values(table.rows());
-  for (std::size_t row = 0; row < values.size(); ++row) {
-    values[row] = unit.ToSi(ValueIn(table, row));
-  }
-  return values;
-}
 
 Quantity ReadQuantity(const std::string& given, const Columns& columns, Role role) {
   Quantity quantity{.role = role};
@@ -448,49 +378,50 @@ std::optional<std::size_t> BestColumn(const Columns& columns, Role role,
 
 void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
                 std::vector<std::string>& notes) {
-  const auto& [name, option, linear, angular, given, chosen, values] = RulesOf(quantity.role);
+  const RoleRules& rules = RulesOf(quantity.role);
+  const Dimension dimension = is_torsional ? rules.angular : rules.linear;
   const std::string& file = columns.table().file;
-  const Dimension dimension = is_torsional ? angular : linear;
   const std::size_t first = quantity.first_column();
   const Column& of = columns[first];
+  const std::string label = columns.Label(first);
   const bool is_time = quantity.role == Role::kTime;
   const bool is_clock = is_time && of.is_clock;
   const std::string of_stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
-  std::string symbol = is_clock ? "s" : quantity.given_unit;
-  const bool is_given = !symbol.empty();
-  if (!is_given) symbol = columns.UnitOf(first, quantity.role);
   const std::string symbols = UnitSymbols(dimension);
   std::string assumed = symbols.substr(0, symbols.find(','));
+  std::string symbol = is_clock ? "s" : quantity.given_unit;
+  const bool is_given = !symbol.empty();
+  bool is_certain = is_given;
+  if (!is_given) symbol = of.is_coefficient ? "coefficient of friction" : of.unit;
   for (const Quantity::Term& term : quantity.terms) {
-    if (is_given || columns.UnitOf(term.column, quantity.role) == symbol) continue;
-    Refuse(
-        "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
-        "as in {} '… [{}]'",
-        file, columns.Label(first), columns.Label(term.column), option, assumed);
+    const std::string& other = columns[term.column].unit;
+    if (is_given || other == of.unit) continue;
+    symbol += fmt::format(" and {}", other);
+    is_certain = true;
   }
   const auto unit = FindUnit(symbol);
-  if (unit && (unit->dimension == linear || unit->dimension == dimension)) {
+  if (unit && (unit->dimension == rules.linear || unit->dimension == dimension)) {
     quantity.unit = *unit;
-  } else if (is_given || (!symbol.empty() && !quantity.is_scaled)) {
+  } else if (is_certain || (!symbol.empty() && !quantity.is_scaled)) {
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",
-        is_given ? file : fmt::format("{}:{}", columns.Header(), first + 1), symbol,
-        columns.Label(first), name, symbols, option, first + 1, assumed, first + 1, assumed);
+        is_given ? file : fmt::format("{}:{}", columns.Header(), first + 1), symbol, label,
+        rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
   } else {
     if (symbol.empty()) {
       quantity.has_no_unit = true;
       if (!of_stamp.empty()) assumed = of_stamp;
       notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                  file, name, columns.Label(first), assumed, option, first + 1,
+                                  file, rules.name, label, assumed, rules.option, first + 1,
                                   assumed));
     }
     quantity.unit = *FindUnit(assumed);
   }
   if (!is_clock && (of_stamp.empty() || of_stamp != quantity.unit.symbol)) return;
   quantity.offset -= of.first;
-  notes.push_back(fmt::format("{}: time {} holds dates or times of day: counted from the first",
-                              file, columns.Label(first)));
+  notes.push_back(
+      fmt::format("{}: time {} holds dates or times of day: counted from the first", file, label));
 }
 
 std::vector<Quantity> AssignRoles(const Columns& columns, const RecordColumns& asked,

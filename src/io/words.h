@@ -15,6 +15,9 @@ struct WordRow {
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 
+// The rank of what is a force only behind its multiplication by a load.
+inline constexpr int kCoefficient = 6;
+
 // One-letter words count as they are written, and only as a whole name.
 inline constexpr std::array kWords = {
     WordRow{Role::kDisplacement, 0, false,
@@ -38,8 +41,8 @@ inline constexpr std::array kWords = {
             "接線力|せん断力"},
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
-            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重|loadcell|ロードセル"},
-    WordRow{Role::kForce, 2, false, "load|last|charge|carga|carico|weight|gewicht|载荷|荷载"},
+            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|loadcell|ロードセル"},
+    WordRow{Role::kForce, 2, false, "load|last|charge|carga|carico|weight|gewicht|载荷|荷载|荷重"},
     WordRow{Role::kForce, 2, true,
             "torque|moment|*drehmoment|couple|coppia|par|tau|τ|扭矩|力矩|トルク"},
     WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},
@@ -69,7 +72,7 @@ inline constexpr std::array kWords = {
             "energy|work|power|frequency|humidity|温度|压力|current|strom|stiffness|"
             "tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
             "compliance|contact compliance"},
-    WordRow{Role::kFrictionCoefficient, 0, false,
+    WordRow{Role::kForce, kCoefficient, false,
             "coefficient of friction|friction coefficient|coef of friction|coeff of friction|"
             "friction coeff|q p|ft fn|cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|"
             "*reibkoeffizient|*reibungskoeffizient|coefficient de frottement|"

@@ -168,8 +168,9 @@ x,F¶furlong,N¶1,2¶ | - | - | :1:1: the unit 'furlong' of 'x' (column 1) is no
 x / m/s,F¶1,2¶ | - | - | :1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]', or with a factor '#1*0.001 [m]'
-x [mm],F¶um,N¶1,2¶ | - | - | :1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below
-   it: choose its unit with --displacement '1 [mm]'
+x [mm],F¶um,N¶1,2¶ | - | - | :1:1: the unit 'mm or um' of 'x [mm]' (column 1) is not known for the
+   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
+   --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3: has a number that is too large in SI units
 x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or remove
    the row

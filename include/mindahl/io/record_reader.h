@@ -25,8 +25,8 @@ struct RecordColumns {
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
   std::string encoding = {};                 ///< name of iconv; "" for the one that is found
   std::optional<double> sample_rate = {};    // [Hz], of a file without a time
-  /// Another file of the same test, whose columns follow those of the first, by time where both
-  /// have one, else row by row.
+  /// Another file of the same test, whose columns follow those of the first, row by row; where both
+  /// have a time, it is the same.
   std::string with = {};
   bool skip_broken_rows = false;  ///< rows that would be refused are left out
 };
