@@ -16,6 +16,8 @@
 namespace mindahl::io {
 namespace {
 
+constexpr double kDay = 86'400.0;  // [s]
+
 /// The texts that spreadsheets write for a number that they could not compute, and other marks.
 constexpr std::array<std::string_view, 19> kMissingMarks = {
     "#n/a", "#value!", "#div/0!",   "#ref!", "#name?", "#num!", "#null!", "nan", "-nan", "+nan",
@@ -26,43 +28,36 @@ bool IsMissingMark(std::string_view text) {
   return std::ranges::find(kMissingMarks, LowerCase(text)) != kMissingMarks.end();
 }
 
-/// Returns the start [s] of a day, "2024-03-05", since 1970; 0 where the order of its parts is not
-/// certain.
-std::optional<double> ReadDate(std::string_view text) {
-  const std::size_t sign = text.find_first_of("-./");
-  if (sign == text.npos) return std::nullopt;
-  const std::vector<std::string_view> parts = PartsOf(text, text[sign]);
-  if (parts.size() != 3) return std::nullopt;
-  const auto year = NumberIn<int>(parts[0]);
-  const auto month = NumberIn<unsigned>(parts[1]);
-  const auto day = NumberIn<unsigned>(parts[2]);
-  if (!year || !month || !day) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(*month),
-                                         std::chrono::day(*day)};
-  if (*year < 1970 || !date.ok()) return 0.0;
-  return kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
-}
-
-/// Returns the seconds of "10:11:12.5" since midnight, or those of a date before it and of it.
-std::optional<double> ReadClock(std::string_view text) {
-  double midnight = 0.0;
-  if (const std::size_t end = text.find_first_of("T "); end != text.npos) {
-    const std::optional<double> date = ReadDate(text.substr(0, end));
-    if (!date) return std::nullopt;
-    midnight = *date;
-    text = Trimmed(text.substr(end + 1));
+/// Returns the seconds of "10:11:12.5" since midnight, behind "2024-03-05T" since 1970; of another
+/// date, whose order is not certain, the time of day alone counts.
+std::optional<double> ReadClock(std::string text) {
+  std::ranges::replace(text, ',', '.');
+  std::string_view rest = text;
+  double seconds = 0.0;
+  if (const std::size_t end = rest.find_first_of("T "); end != rest.npos) {
+    const std::vector<std::string_view> date = PartsOf(rest.substr(0, end), '-');
+    const auto year = NumberIn<int>(date.front());
+    const auto month = NumberIn<unsigned>(date[date.size() / 2]);
+    const auto day = NumberIn<unsigned>(date.back());
+    if (date.size() == 3 && year > 99 && month && day) {
+      const std::chrono::year_month_day of{std::chrono::year(*year), std::chrono::month(*month),
+                                           std::chrono::day(*day)};
+      if (!of.ok()) return std::nullopt;
+      seconds = kDay * static_cast<double>(std::chrono::sys_days(of).time_since_epoch().count());
+    }
+    rest = Trimmed(rest.substr(end + 1));
   }
   // The zone behind it is the same in all rows.
-  std::string plain(text.substr(0, text.find_first_of("Z+")));
-  std::ranges::replace(plain, ',', '.');
-  const std::vector<std::string_view> parts = PartsOf(plain, ':');
-  if (parts.size() != 3) return std::nullopt;
-  const auto hour = NumberIn<unsigned>(parts[0]);
-  const auto minute = NumberIn<unsigned>(parts[1]);
-  const auto second = NumberIn<double>(parts[2]);  // to 60 in one that leaps
-  if (!hour || !minute || !second || *hour > 23 || *minute > 59) return std::nullopt;
-  if (!(*second >= 0 && *second < 61)) return std::nullopt;
-  return midnight + 3600.0 * *hour + 60.0 * *minute + *second;
+  const std::vector<std::string_view> parts =
+      PartsOf(rest.substr(0, rest.find_first_of("Z+")), ':');
+  double unit = 3600.0;
+  for (const std::string_view part : parts) {
+    const auto number = NumberIn<double>(part);
+    if (!number || !(*number >= 0 && *number < 61)) return std::nullopt;  // 60 in one that leaps
+    seconds += unit * *number;
+    unit /= 60;
+  }
+  return parts.size() == 3 ? std::optional(seconds) : std::nullopt;
 }
 
 }  // namespace
@@ -107,18 +102,14 @@ std::string_view CellCursor::Take() {
   return Trimmed(unescaped_);
 }
 
-Cell ReadCell(std::string_view text, char delimiter) {
+Cell ReadCell(std::string_view text, char decimal_mark) {
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string plain(text.substr(text.front() == '+' ? 1 : 0));
+  const auto with_point = [](char sign) { return sign == ',' ? '.' : sign == '.' ? ',' : sign; };
+  if (decimal_mark == ',') std::ranges::transform(plain, plain.begin(), with_point);
   std::size_t digit = text.front() == '-' ? 1 : 0;
   if (plain.size() > digit && plain[digit] == '.') ++digit;
   if (plain.size() <= digit || !IsDigit(plain[digit])) return {};
-  char mark = plain.find('.') == plain.npos ? '\0' : '.';
-  const std::size_t comma = mark == '\0' && delimiter != ',' ? plain.find(',') : plain.npos;
-  if (comma < plain.size() - 1 && IsDigit(plain[comma + 1])) {
-    plain[comma] = '.';
-    mark = ',';
-  }
   double value = 0.0;
   const char* const end = plain.data() + plain.size();
   const auto [stop, error] = std::from_chars(plain.data(), end, value);
@@ -127,24 +118,26 @@ Cell ReadCell(std::string_view text, char delimiter) {
   const bool is_beyond = error == std::errc::result_out_of_range;
   const bool is_small = is_beyond && LowerCase(plain).find("e-") != plain.npos;
   if (stop == end && (!is_beyond || is_small)) {
-    return {.kind = Cell::Kind::kNumber, .value = is_small ? 0.0 : value, .decimal_mark = mark};
+    return {.kind = Cell::Kind::kNumber, .value = is_small ? 0.0 : value};
   }
-  if (const std::optional<double> seconds = ReadClock(text)) {
-    return {.kind = Cell::Kind::kClock, .value = *seconds};
+  if (const std::optional<double> seconds = ReadClock(plain)) {
+    return {.kind = Cell::Kind::kNumber, .value = *seconds, .is_clock = true};
   }
-  return {.kind = ReadDate(text) ? Cell::Kind::kText : Cell::Kind::kBroken};
+  const bool is_date = PartsOf(text, '-').size() == 3 || PartsOf(text, '/').size() == 3;
+  return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
-std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {
-  const std::string shown = ForMessage(text);
-  if (kind == Cell::Kind::kMissing) {
-    return fmt::format("'{}' is not a number: fill in the cell or remove the row", shown);
-  }
-  return fmt::format("'{}' is not a number: write it like -1.5e-3{}, or remove the row", shown,
-                     text.find(',') == text.npos
-                         ? ""
-                         : ", without marks that separate thousands; where commas are "
-                           "decimal marks, separate the columns by ';' or tabs");
+std::string DescribeCellFault(std::string_view text, Cell::Kind kind, char decimal_mark) {
+  const bool has_other_mark = text.find(decimal_mark == ',' ? '.' : ',') != text.npos;
+  const std::string remedy =
+      kind == Cell::Kind::kMissing
+          ? "fill in the cell"
+          : fmt::format("write it like -1{}5e-3{},", decimal_mark,
+                        has_other_mark
+                            ? ", with one decimal mark throughout and none of thousands; where "
+                              "that is a comma, separate the columns by ';' or tabs"
+                            : "");
+  return fmt::format("'{}' is not a number: {} or remove the row", ForMessage(text), remedy);
 }
 
 }  // namespace mindahl::io

@@ -9,8 +9,6 @@
 
 namespace mindahl::io {
 
-inline constexpr double kDay = 86'400.0;  // [s]
-
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 /// Takes the first line off a text, without its end.
@@ -42,18 +40,18 @@ class CellCursor {
   std::string_view Take();
 
   /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
-  /// @returns its text; empty where it is none, and is not taken
-  std::string_view TakeNumber(double& value) {
+  /// @returns false where it is none, and is not taken
+  bool TakeNumber(double& value) {
     const char* const begin = SkipBlanks(at_);
     const char* digits = begin;
     if (digits != end_ && *digits == '-') ++digits;
     if (digits != end_ && *digits == '.') ++digits;
-    if (digits == end_ || *digits < '0' || *digits > '9') return {};  // nor "nan"
+    if (digits == end_ || *digits < '0' || *digits > '9') return false;  // nor "nan"
     const auto [stop, error] = std::from_chars(begin, end_, value);
     const char* const after = delimiter_ == kBlanks ? stop : SkipBlanks(stop);
-    if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return {};
+    if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return false;
     GoBehind(after);
-    return {begin, static_cast<std::size_t>(stop - begin)};
+    return true;
   }
 
  private:
@@ -82,23 +80,21 @@ class CellCursor {
 struct Cell {
   enum class Kind {
     kNumber,
-    kClock,    ///< a time of day, perhaps with a date: its value is in seconds
     kMissing,  ///< empty, or a mark of a missing number: "NaN", "n/a", "#DIV/0!", "-"
     kBroken,   ///< meant as a number and not one: "1.2.3", "5;2", "0x1F", "1e999"
     kText,
   };
   Kind kind = Kind::kText;
-  double value =
-      std::numeric_limits<double>::quiet_NaN();  ///< NaN unless it is a number or a clock
-  char decimal_mark = '\0';                      ///< '.', ',' or none seen
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN unless it is a number
+  bool is_clock = false;  ///< a time of day [s], perhaps behind a date
 };
 
 /// Reads a whole cell as a plain decimal number: sign, digits, one decimal mark, exponent; or as a
-/// time of day, "10:11:12.5", perhaps behind a date. "inf" and hexadecimal are no numbers; a
-/// magnitude below the smallest double is 0. "1,5" is 1.5 where commas do not separate the cells.
-Cell ReadCell(std::string_view text, char delimiter);
+/// time of day, "10:11:12.5", perhaps behind a date, of which that of ISO 8601 counts. "inf" and
+/// hexadecimal are no numbers; a magnitude below the smallest double is 0.
+Cell ReadCell(std::string_view text, char decimal_mark);
 
 /// Describes the fault of a cell that should hold a number, and the remedy.
-std::string DescribeCellFault(std::string_view text, Cell::Kind kind);
+std::string DescribeCellFault(std::string_view text, Cell::Kind kind, char decimal_mark);
 
 }  // namespace mindahl::io

@@ -19,11 +19,7 @@ using Strings = std::vector<std::string>;
 
 constexpr double kBroken = std::numeric_limits<double>::infinity();
 
-bool IsNumeric(Cell::Kind kind) {
-  return kind == Cell::Kind::kNumber || kind == Cell::Kind::kClock;
-}
-
-/// A row of a text, and its cells under some delimiter.
+/// A row of a text, and its cells under some delimiter and decimal mark.
 struct Row {
   std::string_view text = {};
   std::size_t line = 0;
@@ -35,11 +31,11 @@ struct Row {
   std::size_t columns = 0;  // number of cells, one trailing delimiter aside
 
   /// @returns false where it has no cell with a content
-  bool ReadCells(char delimiter) {
+  bool ReadCells(char delimiter, char decimal_mark) {
     CellCursor cursor(text, delimiter);
     while (cursor.has_next()) {
-      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter).kind);
-      numbers += IsNumeric(kinds.back()) ? 1 : 0;
+      kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), decimal_mark).kind);
+      numbers += kinds.back() == Cell::Kind::kNumber ? 1 : 0;
       texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
       empty += cells.back().empty() ? 1 : 0;
       if (!cells.back().empty()) filled = cells.size();
@@ -49,7 +45,8 @@ struct Row {
   }
   /// Looks like data whatever the other rows are: "sample_rate,200" does not, "1,2" does.
   [[nodiscard]] bool HasData() const {
-    return numbers >= 1 && (IsNumeric(kinds.front()) || cells.size() - texts - empty >= 2);
+    return numbers >= 1 &&
+           (kinds.front() == Cell::Kind::kNumber || cells.size() - texts - empty >= 2);
   }
   /// Returns that many names of a header between blanks: words, each with what is in brackets
   /// behind it, or what two blanks or a tab separate.
@@ -81,15 +78,15 @@ bool IsUnitsRow(std::span<const std::string> cells) {
   return units > 0 && 2 * units + std::ranges::count(cells, std::string()) >= std::ssize(cells);
 }
 
-/// The first rows of a text under one delimiter, and how well it explains them as columns of
-/// numbers.
+/// The first rows of a text under one delimiter and decimal mark, and how well it explains them as
+/// columns of numbers.
 class Reading {
  public:
-  Reading(std::span<const Row> sampled, const std::string& file, char delimiter)
-      : layout_{.header = {.file = file}, .delimiter = delimiter} {
+  Reading(std::span<const Row> sampled, const std::string& file, char delimiter, char decimal_mark)
+      : layout_{.header = {.file = file}, .delimiter = delimiter, .decimal_mark = decimal_mark} {
     std::map<std::size_t, std::size_t> rows_with_columns;
     for (Row row : sampled) {
-      if (!row.ReadCells(delimiter)) continue;
+      if (!row.ReadCells(delimiter, decimal_mark)) continue;
       if (row.HasData()) ++rows_with_columns[row.columns];
       rows_.push_back(std::move(row));
     }
@@ -106,8 +103,9 @@ class Reading {
       layout_.holds_numbers.resize(numbers.size());
       for (std::size_t column = 0; column < row.kinds.size(); ++column) {
         const Cell::Kind kind = row.kinds[column];
-        if (IsNumeric(kind)) ++numbers[column];
-        if (IsNumeric(kind) || kind == Cell::Kind::kBroken) layout_.holds_numbers[column] = true;
+        const bool is_number = kind == Cell::Kind::kNumber;
+        if (is_number) ++numbers[column];
+        if (is_number || kind == Cell::Kind::kBroken) layout_.holds_numbers[column] = true;
       }
       if (row.columns != columns_) continue;
       score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
@@ -183,7 +181,7 @@ class Reading {
     for (const Row& row : std::span(rows_).first(data_)) {
       if (!is_labview || layout_.mostly_numbers[0] || row.cells.size() < 2) continue;
       if (row.cells[0] != "Delta_X") continue;
-      const double step = ReadCell(row.cells[1], layout_.delimiter).value;
+      const double step = ReadCell(row.cells[1], layout_.decimal_mark).value;
       if (step > 0) layout_.header.interval = step;
     }
   }
@@ -261,7 +259,7 @@ class Reading {
   /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
   void FindNamesIn(Row comment) {
     comment.text.remove_prefix(std::min(comment.text.find('#') + 1, comment.text.size()));
-    if (!comment.ReadCells(layout_.delimiter)) return;
+    if (!comment.ReadCells(layout_.delimiter, layout_.decimal_mark)) return;
     auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
                                                   : comment.NamesByBlanks(columns_);
     if (!cells || CountKnownWords(*cells) < 2) return;
@@ -308,8 +306,11 @@ Layout FindLayout(std::string_view text, const std::string& file) {
   std::optional<Reading> best;
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
-    Reading reading(sampled, file, delimiter);
-    if (!best || reading.rank() > best->rank()) best = std::move(reading);
+    for (const char decimal_mark : {'.', ','}) {
+      if (decimal_mark == delimiter) continue;
+      Reading reading(sampled, file, delimiter, decimal_mark);
+      if (!best || reading.rank() > best->rank()) best = std::move(reading);
+    }
   }
   return std::move(*best).Find(comment);
 }
@@ -355,6 +356,7 @@ void TableReader::Read(std::string_view text) {
 
 void TableReader::ReadRow(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
+  const bool has_points = layout_.decimal_mark == '.';
   bool is_whole = true;
   std::size_t count = 0;
   for (; count < values_.size() && cells.has_next(); ++count) {
@@ -362,14 +364,9 @@ void TableReader::ReadRow(std::string_view row) {
       cells.Take();
       continue;
     }
-    const std::string_view number =
-        mark_ == ',' ? std::string_view() : cells.TakeNumber(values_[count]);
-    if (number.empty()) {
-      ReadText(count, cells.Take());
-      is_whole = is_whole && std::isfinite(values_[count]);
-    } else if (mark_ == '\0' && number.find('.') != number.npos) {
-      NoteMark('.');
-    }
+    if (has_points && cells.TakeNumber(values_[count])) continue;
+    ReadText(count, cells.Take());
+    is_whole = is_whole && std::isfinite(values_[count]);
   }
   std::string fault;  // of the row
   const std::size_t columns = values_.size();
@@ -421,26 +418,15 @@ void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
 
 /// Reads a cell that is not plainly a number.
 void TableReader::ReadText(std::size_t column, std::string_view text) {
-  const Cell cell = ReadCell(text, layout_.delimiter);
+  const Cell cell = ReadCell(text, layout_.decimal_mark);
   TableColumn& of = table_.columns[column];
-  double& value = values_[column] = cell.value;
-  if (cell.kind == Cell::Kind::kClock) {
-    of.is_clock = true;
-  } else if (cell.kind != Cell::Kind::kNumber) {
-    const bool is_missing = cell.kind == Cell::Kind::kMissing;
-    if (!is_missing) value = kBroken;
-    // A message describes the first cell of a column that is missing or broken.
-    const bool is_first = (is_missing ? of.missing : of.broken).empty();
-    if (is_first) faults_[column] = At(column, DescribeCellFault(text, cell.kind));
-  } else if (cell.decimal_mark != '\0') {
-    NoteMark(cell.decimal_mark);
-    if (cell.decimal_mark == mark_) return;
-    value = kBroken;
-    faults_[column] =
-        At(column, fmt::format("'{}' has the decimal mark '{}' and line {} has '{}': use one "
-                               "throughout",
-                               ForMessage(text), cell.decimal_mark, mark_line_, mark_));
-  }
+  of.is_clock = of.is_clock || cell.is_clock;
+  const bool is_missing = cell.kind == Cell::Kind::kMissing;
+  const bool is_number = cell.kind == Cell::Kind::kNumber;
+  values_[column] = is_number || is_missing ? cell.value : kBroken;
+  // A message describes the first cell of a column that is missing or broken.
+  if (is_number || !(is_missing ? of.missing : of.broken).empty()) return;
+  faults_[column] = At(column, DescribeCellFault(text, cell.kind, layout_.decimal_mark));
 }
 
 /// True for a row of text that repeats the header, or may be above a header that is repeated.
@@ -457,10 +443,10 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
   for (std::size_t k = 0; k < column && cells.has_next(); ++k) cells.Take();
   const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
-  const bool is_text = ReadCell(cell, layout_.delimiter).kind == Cell::Kind::kText;
+  const bool is_text = ReadCell(cell, layout_.decimal_mark).kind == Cell::Kind::kText;
   if (first == layout_.mostly_numbers.end() || !is_text) return false;
   if (gap_ && !gap_->fault.empty()) return true;
-  gap_ = {row_line_, At(column, DescribeCellFault(cell, Cell::Kind::kText))};
+  gap_ = {row_line_, At(column, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark))};
   if (!layout_.names_row.empty()) {
     gap_->fault += fmt::format(
         "; a further block of rows must have the columns of line {} above it", table_.header_line);

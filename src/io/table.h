@@ -42,10 +42,10 @@ struct CsvTable {
 
 /// How a text is to be read as a table.
 ///
-/// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one under which the first 1000 rows
-/// hold the most numbers less broken numbers ("5;2", "12:30"), in that order on a tie. The decimal
-/// mark is a point, or a comma that is not the delimiter; both in one file is an error. Cells may
-/// be quoted (RFC 4180) within a line, a trailing delimiter is no cell.
+/// *Delimiter and decimal mark.* Tab, semicolon, comma or runs of blanks, and a point or a comma
+/// that is not the delimiter: those under which the first 1000 rows hold the most numbers less
+/// broken numbers ("5;2", "12:30"), in that order on a tie. Cells may be quoted (RFC 4180) within a
+/// line, a trailing delimiter is no cell.
 ///
 /// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
 /// meant to be numbers, one of them a number: "sample_rate,200" has none. The data begin at the
@@ -57,7 +57,7 @@ struct CsvTable {
 /// are skipped. A file whose first row is data has the header of a last comment above it, or none.
 struct Layout {
   CsvTable header;  ///< the table without rows
-  char delimiter = ',';
+  char delimiter = ',', decimal_mark = '.';
   // In some of the first rows, and in most, a column holds a number or what is meant as one.
   std::vector<bool> holds_numbers = {}, mostly_numbers = {};
   std::size_t data_offset = 0;                 ///< start of the first data row [bytes]
@@ -91,10 +91,6 @@ class TableReader {
  private:
   void ReadRow(std::string_view row);
   void ReadText(std::size_t column, std::string_view text);
-  void NoteMark(char mark) {
-    if (mark_ == '\0') mark_line_ = row_line_;
-    if (mark_ == '\0') mark_ = mark;
-  }
   bool BelongsToHeader(std::string_view row);
   void EndGap();
   void AddFaulty(std::size_t line, const std::string& fault);
@@ -113,8 +109,6 @@ class TableReader {
   std::vector<std::string> faults_;  // of each column whose value is not finite
   std::size_t line_;
   std::size_t row_line_ = 0;
-  char mark_ = '\0';  // the decimal mark, once one was seen
-  std::size_t mark_line_ = 0;
   std::optional<Gap> gap_;
 };
 

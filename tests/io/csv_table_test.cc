@@ -87,8 +87,8 @@ TEST(CsvTable, IsTheSameInEveryFormat) {
 const std::map<std::string, std::string> kEnds = {
     {"kWrite", " is not a number: write it like -1.5e-3, or remove the row"},
     {"kGroups",
-     " is not a number: write it like -1.5e-3, without marks that separate thousands; where commas "
-     "are decimal marks, separate the columns by ';' or tabs, or remove the row"},
+     " is not a number: write it like -1.5e-3, with one decimal mark throughout and none of "
+     "thousands; where that is a comma, separate the columns by ';' or tabs, or remove the row"},
     {"kFill", " is not a number: fill in the cell or remove the row"},
     {"kExpected",
      ": expected columns of numbers under an optional header, between tabs, ';', blanks, or commas "
@@ -114,7 +114,10 @@ x,F¶1,2¶3,+-4¶ | :3:2: '+-4' +kWrite
 a,1,2¶1,b,2¶1,2,c¶ | :1:1: 'a' +kWrite
 x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' +kWrite
 x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kFill
-x;F¶1,5;2¶3;4.5¶ | :3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one throughout
+x;F¶1,5;2¶3;4.5¶ | :2:1: '1,5' +kGroups
+x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write it like -1,5e-3, with one decimal mark
+   throughout and none of thousands; where that is a comma, separate the columns by ';' or tabs, or
+   remove the row
 x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row has 2 cells of 3: complete it or remove it
 #¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row has 1 cell of 2: complete it or remove it
 x,F¶1,"2¶"¶3,4¶5,z¶ | :2: a quotation mark opened here is never closed in its line

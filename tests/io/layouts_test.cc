@@ -279,8 +279,8 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
 
 TEST(Numbers, HaveNoDecimalCommaBetweenCommas) {
   EXPECT_THAT(Refusal("x [mm],F [N]\n1,2\n2,\"2,345\"\n"),
-              HasSubstr("loop.csv:3:2: '2,345' is not a number: write it like -1.5e-3, without "
-                        "marks that separate thousands; where commas are decimal marks"));
+              HasSubstr("loop.csv:3:2: '2,345' is not a number: write it like -1.5e-3, with one "
+                        "decimal mark throughout and none of thousands; where that is a comma"));
 }
 
 TEST(MissingCells, AreLeftOutUpToOneInAHundred) {

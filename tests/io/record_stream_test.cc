@@ -75,7 +75,8 @@ TEST(RecordStream, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotA
   // A header, a row with the displacement in it, a broken one, and what is said of that.
   for (const auto& [header, row, broken, fault] :
        {std::tuple("time,x,F\n", "12:00:00.5,{},1\n", "noon,1,2\n", ":1: 'noon' is not a number"),
-        {"x;F\n", "{};0,500000000000\n", "1;1.5\n", ":2: '1.5' has the decimal mark '.'"},
+        {"x;F\n", "{};0,500000000000\n", "1;1.5\n",
+         ":2: '1.5' is not a number: write it like -1,5e-3"},
         {"x [um],F [kN]\n", "{},0.500000000000\n", "1,1e307\n",
          ": has a number that is too large"}}) {
     std::string text = header;
