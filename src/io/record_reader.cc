@@ -106,25 +106,21 @@ class RecordBuilder {
       values.push_back((samples.*RulesOf(of.role).values).data());
     LeftOutRows& left_out = file_.left_out;
     std::string refusal;
-    auto block = table.blocks.begin();
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
-      const bool begins_block = block != table.blocks.end() && row == *block;
-      if (begins_block) ++block;
       bool is_whole = true;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        const Quantity& quantity = quantities_[k];
-        double& value = values[k][kept] = quantity.ValueIn(table, row);
-        if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
-        is_whole = is_whole && std::isfinite(value);
+        const double value = quantities_[k].ValueIn(table, row);
+        values[k][kept] = quantities_[k].unit.ToSi(value);
+        is_whole = is_whole && std::isfinite(values[k][kept]);
       }
-      begins_block_ = begins_block_ || begins_block;
-      if (is_whole && (!file_.time || Follows(samples.time[kept]))) {
-        if (has_interval) samples.time[kept] = static_cast<double>(rows_) * interval_;
+      if (has_interval) samples.time[kept] = static_cast<double>(rows_) * interval_;
+      if (is_whole && (samples.time.empty() || samples.time[kept] >= last_time_)) {
+        if (!samples.time.empty()) last_time_ = samples.time[kept];
         samples.lines[kept++] = table.lines[row];
         continue;
       }
       bool is_missing = false;
-      const std::string fault = FaultOf(table, row, is_missing);
+      const std::string fault = FaultOf(table, row, is_whole, is_missing);
       if (!is_missing && !skip_broken_) {
         refusal = fault;
       } else if (left_out.count++ == 0) {
@@ -141,52 +137,28 @@ class RecordBuilder {
   }
 
  private:
-  /// Converts a time; where a clock begins anew in a further block, it goes on by one step.
-  /// @returns false where it is before the last
-  bool Follows(double& time) {
-    if (std::exchange(begins_block_, false) && time + shift_ < last_time_) {
-      shift_ = last_time_ + step_ - time;
-    }
-    time += shift_;
-    if (std::isfinite(last_time_) && time >= last_time_) step_ = time - last_time_;
-    time_above_ = std::exchange(last_time_, time);
-    if (time < time_above_) return false;
-    time = quantities_[2].unit.ToSi(time);
-    return std::isfinite(time);
-  }
-
   /// Describes what is wrong with a row; of cells, the first of their column that are at fault so.
-  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+  std::string FaultOf(const CsvTable& table, std::size_t row, bool is_whole,
+                      bool& is_missing) const {
     for (const std::size_t column : wanted_) {
       const TableColumn& of = table.columns[column];
       if (std::isfinite(of.values[row])) continue;
       is_missing = std::isnan(of.values[row]);
       return is_missing ? of.missing : of.broken;
     }
-    const std::string where = fmt::format("{}:{}", table.file, table.lines[row]);
-    if (!file_.time || last_time_ >= time_above_) {
-      return where + ": has a number that is too large in SI units";
-    }
-    const Quantity& time = quantities_[2];
-    return fmt::format(
-        "{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
-        "rows, split the file where a clock starts again, or rename the column if it holds no time",
-        where, time.first_column() + 1, last_time_, time.unit.symbol, time_above_,
-        time.unit.symbol);
+    return fmt::format("{}:{}: has a {}", table.file, table.lines[row],
+                       is_whole ? "time before that of the row above: sort the rows, split the "
+                                  "file where a clock starts again, or give --sample-rate"
+                                : "number that is too large in SI units");
   }
 
   RecordFile file_;
   std::vector<Quantity> quantities_;
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
-  std::size_t rows_ = 0;       // seen so far
-  double interval_ = 0.0;      // [s] between rows, in place of a column of times
-  bool begins_block_ = false;  // and no time of the block was seen
-  // Times are in their unit.
-  double shift_ = 0.0;
-  double step_ = 0.0;
-  double last_time_ = -std::numeric_limits<double>::infinity();
-  double time_above_ = 0.0;  // the one before the last
+  std::size_t rows_ = 0;   // seen so far
+  double interval_ = 0.0;  // [s] between rows, in place of a column of times
+  double last_time_ = -std::numeric_limits<double>::infinity();  // [s]
 };
 
 namespace {

@@ -100,8 +100,6 @@ LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
   gzbuffer(file_.get(), 1U << 17U);
   Read();
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // the byte-order mark of UTF-8
-  ends_lines_in_cr_ = text_.find('\n') == text_.npos && text_.find('\r') != text_.npos;
-  if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
 }
 
 std::string_view LinePieces::Next() {
@@ -143,7 +141,6 @@ void LinePieces::Read() {
     Refuse("{}{}: is not text, it holds a zero byte: export it as CSV, or give --encoding", name_,
            is_first ? fmt::format(":{}", line) : "");
   }
-  if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
 }
 
 /// Opens the decoder, where the text is not in UTF-8, by the file's first bytes.

@@ -63,7 +63,6 @@ class LinePieces {
   std::string text_;
   std::size_t given_ = 0;  // bytes of it that were returned
   std::uintmax_t bytes_ = 0;
-  bool ends_lines_in_cr_ = false;
   bool at_end_ = false;
   std::string note_;
 };

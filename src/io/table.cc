@@ -127,12 +127,6 @@ class Reading {
       // The first row that cannot be a header stands for the file.
       const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
       const Row& row = data == rows_.end() ? rows_.back() : *data;
-      if (data == rows_.end() && rows_.size() == 1) {
-        Refuse(
-            "{}:{}: the file ends after its header, with no row of numbers below it: export the "
-            "data too",
-            file, row.line);
-      }
       Refuse(
           "{}:{}: none of the first {} rows has numbers, nor has '{}': expected columns of numbers "
           "under an optional header, between tabs, ';', blanks, or commas where these are no "
@@ -328,7 +322,6 @@ TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& w
 
 void TableReader::Clear() {
   table_.lines.clear();
-  table_.blocks.clear();
   for (TableColumn& column : table_.columns) {
     column.values.clear();
     column.broken.clear();
@@ -456,7 +449,7 @@ bool TableReader::BelongsToHeader(std::string_view row) {
 
 /// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
 void TableReader::EndGap() {
-  if (gap_ && gap_->fault.empty()) table_.blocks.push_back(table_.rows());
+  if (gap_ && gap_->fault.empty()) ++table_.repeats;
   if (gap_ && !gap_->fault.empty()) AddFaulty(gap_->line, gap_->fault);
   gap_.reset();
 }
@@ -472,10 +465,10 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   }
   reader.Finish();
   CsvTable table = std::move(reader.table());
-  if (!table.blocks.empty()) {
+  if (table.repeats > 0) {
     table.notes.push_back(
         fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
-                    table.header_line, table.blocks.size()));
+                    table.header_line, table.repeats));
   }
   if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
   return table;

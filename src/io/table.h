@@ -28,9 +28,9 @@ struct TableColumn {
 struct CsvTable {
   std::string file;
   std::vector<TableColumn> columns = {};
-  std::vector<std::size_t> lines = {};   ///< the physical line of each row
-  std::vector<std::size_t> blocks = {};  ///< rows below a header that is repeated among them
-  std::size_t header_line = 0;           ///< physical line of the header, 0 when there is none
+  std::vector<std::size_t> lines = {};  ///< the physical line of each row
+  std::size_t repeats = 0;              ///< of the header, among the rows
+  std::size_t header_line = 0;          ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
   std::vector<std::string> notes = {};  ///< sentences on what was assumed of the file
 

@@ -242,7 +242,7 @@ struct BadFile {
 TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
   const std::vector<BadFile> files = {
       {"empty.csv", "", "the file is empty"},
-      {"header.csv", "x [m],F [N]\n", "header.csv:1: the file ends after its header"},
+      {"header.csv", "x [m],F [N]\n", "header.csv:1: none of the first 1 rows has numbers"},
       {"one.csv", "x [m],F [N]\n1,2\n", "one.csv:2:1: the displacement never changes"},
       {"still.csv", "#\nx [m],F [N]\n1,2\n1,3\n1,4\n", "still.csv:3:1: the displacement never"},
       {"mm.csv", "t [s],F [N],x [mm]\n1,2,5\n2,3,5\n",

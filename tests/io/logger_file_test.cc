@@ -105,7 +105,7 @@ TEST(LoggerFile, MayHaveTimesOfDay) {
                   .record.time,
               ElementsAre(0, 0.75, 217'800.5));
   EXPECT_THAT(Refusal("Time,x [mm],F [N]\n11:00:02,0,1\n11:00:01,1,2\n"),
-              StartsWith("loop.csv:3:1: time"));
+              StartsWith("loop.csv:3: has a time"));
 }
 
 }  // namespace

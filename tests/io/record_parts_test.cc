@@ -38,14 +38,5 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(refusal(), HasSubstr("needs a time column"));
 }
 
-TEST(Blocks, GoOnByOneStepWhereAClockBeginsAnew) {
-  const std::string header = "time [s],x [m],F [N]\n";
-  const RecordFile file =
-      Read(header + "0,0,1\n1,1,2\n" + header + "0,2,3\n1,3,4\n" + header + "7,4,5\n8,5,6\n");
-  EXPECT_THAT(file.record.time, ElementsAre(0, 1, 2, 3, 9, 10))
-      << "a clock that begins anew goes on by one step, and keeps its zero from there";
-  EXPECT_THAT(file.record.force, ElementsAre(1, 2, 3, 4, 5, 6));
-}
-
 }  // namespace
 }  // namespace mindahl::io::record_parts_test

@@ -159,9 +159,9 @@ angle,F¶1,2¶ | - | [kN] | : 'angle' (column 1) and 'F' (column 2) do not match
 left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
    and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
    number: the columns are 'left' (1), 'F' (2)
-time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6:1: time = 0.5 ms is
-   before the 2 ms of the row above: times must not fall; sort the rows, split the file where a
-   clock starts again, or rename the column if it holds no time
+time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6: has a time
+   before that of the row above: sort the rows, split the file where a clock starts again, or give
+   --sample-rate
 x,F¶furlong,N¶1,2¶ | - | - | :1:1: the unit 'furlong' of 'x' (column 1) is not known for the
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]', or with a factor '#1*0.001 [m]'

@@ -83,7 +83,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// register with a sign bit are refused.
 ///
 /// *Units.* As given; else of the header; else m, N, s, with a note. Stamps and times of day count
-/// from the first row; in a further block of rows a clock may begin anew.
+/// from the first row.
 ///
 /// *Rows* without a number in a column that is used are left out, with a note; more than one in a
 /// hundred are an error, unless broken rows are skipped.
