@@ -27,12 +27,12 @@ namespace {
 // readers too; shades go from early, dark, to late.
 constexpr std::string_view kStyle =
     "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
-    ".grid,.axis,.mark,.line,.dots{fill:none}.grid{stroke:#e4e4e4}"
+    ".grid,.axis,.mark,.line,.dots,.marker{fill:none}.grid{stroke:#e4e4e4}"
     ".axis{stroke:#444;stroke-width:1.2}.mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
     ".line,.dots,.marker{stroke:currentColor}"
     ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
-    ".dots{stroke-width:3.2;stroke-linecap:round}.marker{fill:#fff;stroke-width:1.8}"
-    ".area,.marker.more{fill:currentColor}.area{fill-opacity:.22}.line.more{stroke-dasharray:10 5}"
+    ".dots,.marker{stroke-width:3.2;stroke-linecap:round}.marker{stroke-width:7}"
+    ".area{fill:currentColor;fill-opacity:.22}.line.more{stroke-dasharray:10 5}"
     ".s0{color:#c2334a}.s1{color:#2f6ea5}.s2{color:#3a9d6e}"
     ".s3{color:#8d6bb1}.s4{color:#e09f3e}.s5{color:#5f6b76}"
     ".h0{color:#440154}.h1{color:#46327e}.h2{color:#365c8d}.h3{color:#277f8e}"
@@ -60,19 +60,9 @@ std::string Group(double x, double y, std::string_view elements) {
   return fmt::format("<g transform=\"translate({:.1f},{:.1f})\">{}</g>\n", x, y, elements);
 }
 
-/// Returns the label of a tic, "0.5" or "2·10⁻⁷".
+/// Returns the label of a tic, "0.5" or "2e-07".
 std::string TicLabel(double value) {
-  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
-                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
-  if (value < 0) return "−" + TicLabel(-value);
-  if (value == 0 || (value > 1.5e-3 && value < 9e4)) return fmt::format("{:.6g}", value);
-  const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
-  const std::string factor = fmt::format("{:.4g}", value / std::pow(10.0, power));
-  std::string text = factor == "1" ? "10" : factor + "·10";
-  for (const char character : std::to_string(power)) {
-    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
-  }
-  return text;
+  return (value < 0 ? "−" : "") + fmt::format("{:.6g}", std::abs(value));
 }
 
 /// One axis: data to pixels, and where its tics are.
@@ -95,7 +85,14 @@ class Axis {
     }
     from_ -= margin * span;
     to_ += margin * span;
-    is_logarithmic ? PlaceTicsOfPowers() : PlaceTics();
+    constexpr double kFewDecades = 0.8;  // has even tics too
+    if (!is_logarithmic) {
+      PlaceTics(from_, to_);
+    } else if (to_ - from_ < kFewDecades) {
+      PlaceTics(std::pow(10.0, from_), std::pow(10.0, to_));
+    } else {
+      PlaceTicsOfPowers();
+    }
   }
 
   [[nodiscard]] double Pixel(double value) const {
@@ -107,30 +104,28 @@ class Axis {
     return is_logarithmic_ ? std::log10(value) : value;
   }
 
-  void PlaceTics() {
+  void PlaceTics(double from, double to) {
     constexpr double kTics = 5.5;
     constexpr double kShortest = 0.75;  // of the distance between that many
-    const double rough = (to_ - from_) / kTics;
+    const double rough = (to - from) / kTics;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
     double step = 10 * power;
     for (const double multiple : {5.0, 2.0, 1.0}) {
       if (multiple * power >= kShortest * rough) step = multiple * power;
     }
-    for (double k = std::ceil(from_ / step); k * step <= to_; ++k) tics.push_back(k * step);
+    for (double k = std::ceil(from / step); k * step <= to; ++k) tics.push_back(k * step);
   }
 
   void PlaceTicsOfPowers() {
-    constexpr std::array kMultiples = {1, 2, 5, 3, 4, 6, 7, 8, 9};
-    const double span = to_ - from_;
-    const double step = std::ceil(span / 8);
-    const std::size_t multiples = span > 2.5 ? 1 : span > 0.8 ? 3 : kMultiples.size();
+    constexpr double kManyDecades = 2.5;
+    const double step = std::ceil((to_ - from_) / 8);
     for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
-      for (const int multiple : std::span(kMultiples).first(multiples)) {
+      for (const double multiple : {1.0, 2.0, 5.0}) {
         const double at = power + std::log10(multiple);
-        if (at >= from_ && at <= to_) tics.push_back(multiple * std::pow(10.0, power));
+        const bool is_one = multiple == 1 || to_ - from_ < kManyDecades;
+        if (is_one && at >= from_ && at <= to_) tics.push_back(multiple * std::pow(10.0, power));
       }
     }
-    std::ranges::sort(tics);
   }
 
   bool is_logarithmic_;
@@ -191,7 +186,7 @@ std::string DrawSeries(const Values& x, const Values& y, PlotStyle style, std::s
   // A path of one point draws nothing.
   std::string line = draw("line", Points(x, y, "") + "h0");
   if (style == PlotStyle::kLine) return line;
-  return line + draw("marker", Points(x, y, "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z"));
+  return line + draw("marker", Points(x, y, "h0"));
 }
 
 /// Draws axes, grid, labels and marks.
@@ -314,7 +309,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   int place = -1;  // of a series in the order of colours
   for (const PlotSeries& series : panel.series) {
     if (!series.shade && (place < 0 || !series.label.empty())) ++place;
-    // In these it differs from others, beyond the first six in dashes or filled markers.
+    // In these it differs from others, beyond the first six in dashes.
     const std::string look =
         series.shade
             ? fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade))

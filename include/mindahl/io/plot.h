@@ -7,7 +7,7 @@
 
 namespace mindahl::io {
 
-/// Points are small dots for dense records, those on a line are circles; an area is filled.
+/// Points are small dots for dense records, those on a line are larger; an area is filled.
 enum class PlotStyle { kLine, kPoints, kLineAndPoints, kArea };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
