@@ -315,10 +315,8 @@ struct RecordStream::State {
   /// The table of the first rows, by which the content of the columns is judged: what becomes of
   /// those at fault is for Next() to say.
   CsvTable FirstRows() const {
-    constexpr std::size_t kJudged = LinePieces::kPiece / 8;  // [bytes]
     TableReader first(layout);
-    const std::string_view data = rows.substr(layout.data_offset);
-    first.Read(data.substr(0, std::min(data.find('\n', kJudged), data.size() - 1) + 1));
+    first.Read(rows.substr(layout.data_offset));
     return std::move(first.table());
   }
 

@@ -89,7 +89,8 @@ class RoleAssigner {
     for (const std::size_t k : {0U, 1U}) {
       if (is_found[k]) RequireMoving(kPair[k], kPair[1 - k]);
     }
-    const bool is_torsional = RequireOneKind();
+    const bool is_torsional = std::ranges::any_of(
+        kPair, [this](Role role) { return ColumnOf(role).IsAngular(Of(role).given_unit) == true; });
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
     for (Quantity& quantity : roles_) FindUnitOf(quantity, columns_, is_torsional, notes_);
     return std::move(roles_);
@@ -136,7 +137,7 @@ class RoleAssigner {
     bool moves = false;
   };
 
-  /// @param turns  whether it is to be an angle or a torque, where that matters
+  /// @param turns  whether it is to be an angle or a torque; empty where that does not matter
   /// @param other  the column of the other role
   Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
     Choice best;
@@ -144,10 +145,10 @@ class RoleAssigner {
       const Column& of = columns_[column];
       const bool is_given = !IsMissing(role) && column == Of(role).first_column();
       const int evidence = EvidenceFor(of, role);
-      const bool is_free =
-          IsMissing(role) && !taken_[column] && column != other && of.is_numeric && evidence > 0;
+      const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0 &&
+                           !columns_.table().columns[column].values.empty();
       const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
-      if (!(is_given || is_free) || (turns && is_angular && is_angular != turns)) continue;
+      if (!(is_given || is_free) || (turns && is_angular.value_or(*turns) != *turns)) continue;
       const int score = evidence + (of.goes_to_and_fro ? kMoving : 0);
       if (score == best.score) best.rival = column;
       if (score > best.score || is_given) best = {column, score, {}, of.goes_to_and_fro};
@@ -155,8 +156,8 @@ class RoleAssigner {
     return best;
   }
 
-  /// Takes the displacement and the force of the most evidence: before all others two that go
-  /// together, then two that do not, which is refused.
+  /// Takes the displacement and the force of the most evidence before all others two that go
+  /// together, then two that do not, of which one has no unit of its role.
   void FindPair() {
     constexpr int kWeak = 60;  // two columns by words that are hardly any
     constexpr int kMixed = 1'000'000;
@@ -223,12 +224,6 @@ class RoleAssigner {
   }
 
   [[noreturn]] void ThrowNoColumn(Role role) {
-    for (std::size_t column = 0; column < columns_.size(); ++column) {
-      const bool is_named = !columns_.table().columns[column].name.empty();
-      const bool is_other = is_named && EvidenceFor(columns_[column], role) == 0;
-      if (columns_[column].is_numeric || is_other) continue;
-      static_cast<void>(columns_.table().Numbers(column));  // throws
-    }
     Refuse("{}: no column for the {}: {}: choose it with {}, by name or number", file_,
            RulesOf(role).name, columns_.Listing(), RulesOf(role).option);
   }
@@ -248,20 +243,6 @@ class RoleAssigner {
         file_, columns_.table().lines.front(), column + 1, columns_.Label(column),
         of.trend > 0 ? "grows" : "falls", columns_.Label(Of(other).first_column()),
         RulesOf(role).name, RulesOf(role).option, columns_.Listing());
-  }
-
-  /// @returns true for a torque against an angle
-  bool RequireOneKind() {
-    const auto turns = ColumnOf(kPair[0]).IsAngular(Of(kPair[0]).given_unit);
-    const auto twists = ColumnOf(kPair[1]).IsAngular(Of(kPair[1]).given_unit);
-    const bool is_torsional = turns == true || twists == true;
-    if (!is_torsional || (turns != false && twists != false)) return is_torsional;
-    const std::size_t force = Of(Role::kForce).first_column();
-    Refuse(
-        "{}: {} and {} do not match: a torque needs an angle, a force a length: choose other "
-        "columns, or give their units, as in --force '{} [N]'",
-        file_, columns_.Label(Of(Role::kDisplacement).first_column()), columns_.Label(force),
-        force + 1);
   }
 
   const Columns& columns_;
@@ -400,7 +381,9 @@ void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
     is_certain = true;
   }
   const auto unit = FindUnit(symbol);
-  if (unit && (unit->dimension == rules.linear || unit->dimension == dimension)) {
+  const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
+  if (unit &&
+      (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear))) {
     quantity.unit = *unit;
   } else if (is_certain || (!symbol.empty() && !quantity.is_scaled)) {
     Refuse(

@@ -111,7 +111,7 @@ struct Samples : loop::Record {
 /// A record read piece by piece, in memory that does not depend on its length.
 ///
 /// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
-/// the header, in the first mebibyte, and the first 128 kibibytes of rows; every row is then read
+/// the header and the rows in the first mebibyte; every row is then read
 /// by the same rules. Covariates are not read.
 class RecordStream {
  public:
