@@ -43,12 +43,9 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
-/// Parts of a name in lower case that leave its numbers without a unit: beginnings of a factor, and
-/// words for a ratio.
-constexpr std::array<std::string_view, 18> kNoUnits = {
-    "×",        "*0",      "*1",      " x0.",       " x 0.",      " x10",
-    " x 10",    "1e-",     " e-",     "normalized", "normalised", "normalisiert",
-    "normiert", "percent", "prozent", "pct",        " ratio",     "%"};
+/// Beginnings of a factor behind a name, in lower case, that make its unit none.
+constexpr std::array<std::string_view, 10> kFactors = {"×",    "*0",    "*1",  " x0.", " x 0.",
+                                                       " x10", " x 10", "1e-", " e-",  "%"};
 
 /// True if a list "|a|b|" has the word.
 bool Lists(std::string_view list, std::string_view word) {
@@ -125,11 +122,15 @@ void FindWord(Column& column) {
       column.word = entry;
       std::tie(column.role, column.rank, column.is_angular) =
           std::tie(row.role, row.rank, row.is_angular);
-      column.is_coefficient = row.rank == kCoefficient;
+      column.is_ratio = row.rank == kRatio;
     }
   }
-  column.is_lesser = std::ranges::any_of(PartsOf(kLesserWords, '|'),
-                                         [&](auto lesser) { return MatchEnd(lesser, words) > 0; });
+  const auto has_any = [&](std::string_view list) {
+    return std::ranges::any_of(PartsOf(list, '|'),
+                               [&](auto word) { return MatchEnd(word, words) > 0; });
+  };
+  column.is_lesser = has_any(kLesserWords);
+  column.is_ratio = column.is_ratio || (column.unit.empty() && has_any(kRatios));
   column.other_words = CountWords(words) - std::min(CountWords(words), std::get<0>(best));
 }
 
@@ -208,18 +209,15 @@ void TakeUnitAmongWords(Column& column) {
   }
 }
 
-/// Gives a name with a factor, or of a ratio, a unit that is none.
-void RequireUnit(Column& column) {
+/// Gives a name with a factor a unit that is none.
+void RequireNoFactor(Column& column) {
   std::string lower = LowerCase(column.name);
   std::ranges::replace(lower, '(', ' ');
-  for (const std::string_view part : kNoUnits) {
-    const bool is_ratio = IsSmall(part.back());
-    const std::size_t found = lower.find(part);
+  for (const std::string_view factor : kFactors) {
     // A name may begin with what would be a factor behind it: "x10 [mm]".
-    if (found == lower.npos || (is_ratio ? !column.unit.empty() : found == 0)) continue;
-    const std::size_t at = lower.find_first_not_of(' ', found);
-    const std::string_view rest =
-        is_ratio ? Trimmed(part) : std::string_view(column.name).substr(at);
+    const std::size_t found = lower.find(factor);
+    if (found == lower.npos || found == 0) continue;
+    const std::string_view rest = Trimmed(std::string_view(lower).substr(found));
     column.unit += column.unit.empty() ? "" : " ";
     column.unit += rest.substr(0, rest.find_first_of(")]"));
     return;
@@ -278,7 +276,7 @@ Column ReadName(std::string_view header) {
   name.resize(std::min(name.find(" PI: "), name.size()));  // of Abaqus: a label of a point
   TakeUnitInBrackets(column);
   if (column.unit.empty()) TakeUnitAmongWords(column);
-  RequireUnit(column);
+  RequireNoFactor(column);
   FindWord(column);
   return column;
 }
@@ -330,8 +328,8 @@ void Columns::FindLoadOfFriction() {
   for (Column& of : *this) {
     const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
                         of.greatest < kGreatestCoefficient;
-    if (may_be && (of.word == "friction" || of.word == "f")) of.is_coefficient = true;
-    has_friction = has_friction || of.is_coefficient || (of.names(Role::kForce) && of.rank == 0);
+    if (may_be && (of.word == "friction" || of.word == "f")) of.is_ratio = true;
+    has_friction = has_friction || of.is_ratio || (of.names(Role::kForce) && of.rank == 0);
   }
   for (Column& of : *this) {
     const bool is_load =

@@ -38,7 +38,7 @@ struct Column {
   int rank = 0;
   bool is_angular = false;
   bool is_lesser = false;       // commanded, raw or a statistic
-  bool is_coefficient = false;  // of friction, by its name or as it is beside a load
+  bool is_ratio = false;        // without a unit: a coefficient of friction
   std::size_t other_words = 0;  // in the name
   // From the numbers in its rows:
   bool is_numeric = false;             // half of its rows or more have one

@@ -343,7 +343,7 @@ bool RecordStream::Next(Samples& samples) {
     const std::string_view text = rows.empty() ? pieces.Next() : std::exchange(rows, {});
     reader.Clear();
     reader.Read(text);
-    if (text.empty()) reader.Finish();
+    if (text.empty()) reader.EndText();
     refusal = builder.Add(reader.table(), samples);
     if (text.empty() && refusal.empty()) return false;
   }

@@ -159,17 +159,17 @@ class Reading {
     const auto names =
         std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
     const bool is_labview = names != rows_.end();
-    for (auto row = is_labview ? names : rows_.begin(); row != rows_.end(); ++row) {
+    const auto is_data = [this](const Row& row) {
       // A trailing delimiter, or empty cells at the end, leave the number of columns open.
-      const bool fits = row->filled <= columns_ && columns_ <= row->cells.size();
-      bool is_data = fits && row->HasData();
-      for (std::size_t column = 0; column < row->kinds.size() && is_data; ++column) {
-        is_data = !layout_.mostly_numbers[column] || row->kinds[column] != Cell::Kind::kText;
+      bool may_be = row.filled <= columns_ && columns_ <= row.cells.size() && row.HasData();
+      for (std::size_t column = 0; column < row.kinds.size() && may_be; ++column) {
+        may_be = !layout_.mostly_numbers[column] || row.kinds[column] != Cell::Kind::kText;
       }
-      if (!is_data) continue;
-      data_ = static_cast<std::size_t>(row - rows_.begin());
-      break;  // else text is in every row, each time in another column
-    }
+      return may_be;
+    };
+    const auto data = std::find_if(is_labview ? names : rows_.begin(), rows_.end(), is_data);
+    // Else text is in every row, each time in another column.
+    if (data != rows_.end()) data_ = static_cast<std::size_t>(data - rows_.begin());
     layout_.data_offset = rows_[data_].offset;
     layout_.data_line = rows_[data_].line;
     for (const Row& row : std::span(rows_).first(data_)) {
@@ -314,8 +314,9 @@ TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& w
       table_(layout.header),
       is_wanted_(wanted.empty() ? layout.holds_numbers
                                 : std::vector<bool>(layout.header.columns.size())),
-      values_(is_wanted_.size()),
-      faults_(is_wanted_.size()),
+      // Of the columns of numbers the first.
+      text_column_(static_cast<std::size_t>(std::ranges::find(layout.mostly_numbers, true) -
+                                            layout.mostly_numbers.begin())),
       line_(layout.data_line - 1) {
   for (const std::size_t column : wanted) is_wanted_[column] = true;
 }
@@ -330,128 +331,118 @@ void TableReader::Clear() {
 }
 
 std::string TableReader::At(std::size_t column, std::string_view fault) const {
-  return fmt::format("{}:{}:{}: {}", table_.file, row_line_, column + 1, fault);
+  return fmt::format("{}:{}:{}: {}", table_.file, line_, column + 1, fault);
 }
 
 void TableReader::Read(std::string_view text) {
   const std::string no_content = {layout_.delimiter, ' ', '\t', '\r'};
   while (!text.empty()) {
-    row_line_ = ++line_;
+    ++line_;
     const std::string_view row = TakeLine(text);
-    // Most begin with a digit or a sign; a blank is below '#'.
-    const bool may_be_none = row.empty() || row.front() <= '#' || row.front() == layout_.delimiter;
-    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
+    const std::size_t first = row.find_first_not_of(' ');
+    const bool is_number = first != row.npos && (IsDigit(row[first]) || row[first] == '-');
+    if (!is_number && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos ||
+                       BelongsToHeader(row))) {
       continue;
     }
+    EndText();
     ReadRow(row);
   }
 }
 
 void TableReader::ReadRow(std::string_view row) {
-  CellCursor cells(row, layout_.delimiter);
+  const std::size_t columns = is_wanted_.size();
   const bool has_points = layout_.decimal_mark == '.';
-  bool is_whole = true;
+  table_.lines.push_back(line_);
+  CellCursor cells(row, layout_.delimiter);
   std::size_t count = 0;
-  for (; count < values_.size() && cells.has_next(); ++count) {
+  for (; count < columns && cells.has_next(); ++count) {
     if (!is_wanted_[count]) {
       cells.Take();
       continue;
     }
-    if (has_points && cells.TakeNumber(values_[count])) continue;
-    ReadText(count, cells.Take());
-    is_whole = is_whole && std::isfinite(values_[count]);
+    double value = 0.0;
+    if (!has_points || !cells.TakeNumber(value)) value = ReadText(count, cells.Take());
+    table_.columns[count].values.push_back(value);
   }
   std::string fault;  // of the row
-  const std::size_t columns = values_.size();
   for (std::size_t column = count; cells.has_next(); ++column) {
-    const std::string_view text = cells.Take();
-    if (text.empty() || !fault.empty()) continue;
-    fault =
-        At(column, fmt::format("'{}' is one cell too many: the table has {} column{}{}",
-                               ForMessage(text), columns, columns == 1 ? "" : "s",
-                               layout_.delimiter == ','
-                                   ? "; leave out commas that separate thousands, and separate the "
-                                     "columns by ';' or tabs where commas are decimal marks"
-                                   : ""));
+    if (cells.Take().empty() || !fault.empty()) continue;
+    fault = At(column, fmt::format("one cell too many: the table has {} column{}{}", columns,
+                                   columns == 1 ? "" : "s",
+                                   layout_.delimiter == ','
+                                       ? "; leave out commas that separate thousands, and separate "
+                                         "the columns by ';' or tabs where commas are decimal marks"
+                                       : ""));
   }
   if (cells.is_open()) {
     fault = fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
-                        table_.file, row_line_);
+                        table_.file, line_);
   }
-  for (std::size_t missing = count; missing < columns; ++missing) {
-    if (!is_wanted_[missing]) continue;
-    is_whole = false;
-    values_[missing] = kBroken;
-    faults_[missing] =
-        At(missing, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
-                                count == 1 ? "" : "s", columns));
-  }
-  if ((!is_whole || !fault.empty()) && !cells.is_open() && BelongsToHeader(row)) return;
-  EndGap();
-  if (!fault.empty()) return AddFaulty(row_line_, fault);
-  table_.lines.push_back(row_line_);
-  for (std::size_t k = 0; k < columns; ++k) {
-    if (!is_wanted_[k]) continue;
-    TableColumn& column = table_.columns[k];
-    column.values.push_back(values_[k]);
-    if (is_whole || std::isfinite(values_[k])) continue;
-    std::string& first = std::isnan(values_[k]) ? column.missing : column.broken;
-    if (first.empty()) first = faults_[k];
+  if (!fault.empty()) Break(fault, 0);
+  if (count == columns) return;
+  Break(At(count, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
+                              count == 1 ? "" : "s", columns)),
+        count);
+}
+
+/// Says what is at fault in the last row, from a column on.
+void TableReader::Break(const std::string& fault, std::size_t column) {
+  for (; column < is_wanted_.size(); ++column) {
+    if (!is_wanted_[column]) continue;
+    TableColumn& of = table_.columns[column];
+    of.values.resize(table_.lines.size());
+    of.values.back() = kBroken;
+    if (of.broken.empty()) of.broken = fault;
   }
 }
 
-void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
-  table_.lines.push_back(line);
-  for (std::size_t k = 0; k < values_.size(); ++k) {
-    if (!is_wanted_[k]) continue;
-    table_.columns[k].values.push_back(kBroken);
-    if (table_.columns[k].broken.empty()) table_.columns[k].broken = fault;
-  }
-}
-
-/// Reads a cell that is not plainly a number.
-void TableReader::ReadText(std::size_t column, std::string_view text) {
+/// Returns the value of a cell that is not plainly a number.
+double TableReader::ReadText(std::size_t column, std::string_view text) {
   const Cell cell = ReadCell(text, layout_.decimal_mark);
   TableColumn& of = table_.columns[column];
   of.is_clock = of.is_clock || cell.is_clock;
+  if (cell.kind == Cell::Kind::kNumber) return cell.value;
   const bool is_missing = cell.kind == Cell::Kind::kMissing;
-  const bool is_number = cell.kind == Cell::Kind::kNumber;
-  values_[column] = is_number || is_missing ? cell.value : kBroken;
-  // A message describes the first cell of a column that is missing or broken.
-  if (is_number || !(is_missing ? of.missing : of.broken).empty()) return;
-  faults_[column] = At(column, DescribeCellFault(text, cell.kind, layout_.decimal_mark));
+  std::string& said = is_missing ? of.missing : of.broken;
+  if (said.empty()) said = At(column, DescribeCellFault(text, cell.kind, layout_.decimal_mark));
+  return is_missing ? cell.value : kBroken;
 }
 
 /// True for a row of text that repeats the header, or may be above a header that is repeated.
 bool TableReader::BelongsToHeader(std::string_view row) {
+  CellCursor cells(row, layout_.delimiter);
+  for (std::size_t k = 0; k < text_column_ && cells.has_next(); ++k) cells.Take();
+  double number = 0.0;
+  if (text_column_ == is_wanted_.size() || cells.TakeNumber(number)) return false;
   const std::string_view text = Trimmed(row);
   if ((!layout_.names_row.empty() && text == Trimmed(layout_.names_row)) ||
-      (gap_ && gap_->fault.empty() && text == Trimmed(layout_.units_row))) {
-    gap_ = {row_line_, ""};
+      (repeats_header_ && text == Trimmed(layout_.units_row))) {
+    repeats_header_ = true;
+    text_fault_.clear();
     return true;
   }
-  // Its first column of numbers has a text.
-  const auto first = std::ranges::find(layout_.mostly_numbers, true);
-  const auto column = static_cast<std::size_t>(first - layout_.mostly_numbers.begin());
-  CellCursor cells(row, layout_.delimiter);
-  for (std::size_t k = 0; k < column && cells.has_next(); ++k) cells.Take();
   const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
-  const bool is_text = ReadCell(cell, layout_.decimal_mark).kind == Cell::Kind::kText;
-  if (first == layout_.mostly_numbers.end() || !is_text) return false;
-  if (gap_ && !gap_->fault.empty()) return true;
-  gap_ = {row_line_, At(column, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark))};
+  if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
+  if (!text_fault_.empty()) return true;
+  text_line_ = line_;
+  text_fault_ = At(text_column_, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark));
   if (!layout_.names_row.empty()) {
-    gap_->fault += fmt::format(
+    text_fault_ += fmt::format(
         "; a further block of rows must have the columns of line {} above it", table_.header_line);
   }
   return true;
 }
 
-/// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
-void TableReader::EndGap() {
-  if (gap_ && gap_->fault.empty()) ++table_.repeats;
-  if (gap_ && !gap_->fault.empty()) AddFaulty(gap_->line, gap_->fault);
-  gap_.reset();
+void TableReader::EndText() {
+  if (!text_fault_.empty()) {
+    table_.lines.push_back(text_line_);
+    Break(text_fault_, 0);
+  } else if (repeats_header_) {
+    ++table_.repeats;
+  }
+  text_fault_.clear();
+  repeats_header_ = false;
 }
 
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding) {
@@ -463,7 +454,7 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
   }
-  reader.Finish();
+  reader.EndText();
   CsvTable table = std::move(reader.table());
   if (table.repeats > 0) {
     table.notes.push_back(

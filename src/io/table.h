@@ -79,10 +79,8 @@ class TableReader {
   /// Reads further rows.
   /// @param text  of whole lines; the first piece without what is above the data
   void Read(std::string_view text);
-  /// Notes that there are no further rows: text below the data is a fault.
-  void Finish() {
-    if (gap_ && !gap_->fault.empty()) EndGap();
-  }
+  /// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
+  void EndText();
 
   [[nodiscard]] CsvTable& table() { return table_; }
   /// Forgets the rows read so far.
@@ -90,26 +88,20 @@ class TableReader {
 
  private:
   void ReadRow(std::string_view row);
-  void ReadText(std::size_t column, std::string_view text);
+  double ReadText(std::size_t column, std::string_view text);
   bool BelongsToHeader(std::string_view row);
-  void EndGap();
-  void AddFaulty(std::size_t line, const std::string& fault);
+  void Break(const std::string& fault, std::size_t column);
   [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
-
-  /// Text since the last row of numbers.
-  struct Gap {
-    std::size_t line;   // its first
-    std::string fault;  // "" of a header that is repeated
-  };
 
   Layout layout_;
   CsvTable table_;
-  std::vector<bool> is_wanted_;      // of each column
-  std::vector<double> values_;       // of each column, in the row
-  std::vector<std::string> faults_;  // of each column whose value is not finite
+  std::vector<bool> is_wanted_;  // of each column
+  std::size_t text_column_;      // that has a text in a row of text
   std::size_t line_;
-  std::size_t row_line_ = 0;
-  std::optional<Gap> gap_;
+  // Of the text since the last row of numbers: the fault and line of what is no header.
+  bool repeats_header_ = false;
+  std::string text_fault_;
+  std::size_t text_line_ = 0;
 };
 
 /// Reads a delimited text as a table, from a file that is plain or compressed by gzip. About 0.1 s

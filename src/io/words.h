@@ -15,8 +15,8 @@ struct WordRow {
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 
-// The rank of what is a force only behind its multiplication by a load.
-inline constexpr int kCoefficient = 6;
+// The rank of what is a force only when it is multiplied by a load.
+inline constexpr int kRatio = 6;
 
 // One-letter words count as they are written, and only as a whole name.
 inline constexpr std::array kWords = {
@@ -72,7 +72,7 @@ inline constexpr std::array kWords = {
             "energy|work|power|frequency|humidity|温度|压力|current|strom|stiffness|"
             "tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
             "compliance|contact compliance"},
-    WordRow{Role::kForce, kCoefficient, false,
+    WordRow{Role::kForce, kRatio, false,
             "coefficient of friction|friction coefficient|coef of friction|coeff of friction|"
             "friction coeff|q p|ft fn|cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|"
             "*reibkoeffizient|*reibungskoeffizient|coefficient de frottement|"
@@ -86,5 +86,9 @@ inline constexpr std::array kWords = {
 inline constexpr std::string_view kLesserWords =
     "setpoint|set|goal|demand|command|cmd|commanded|target|desired|reference|ref|control|soll|"
     "sollwert|consigne|consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
+
+// What leaves numbers without a unit.
+inline constexpr std::string_view kRatios =
+    "normalized|normalised|normalisiert|normiert|percent|prozent|pct|ratio";
 
 }  // namespace mindahl::io

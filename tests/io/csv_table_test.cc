@@ -94,7 +94,7 @@ const std::map<std::string, std::string> kEnds = {
      "where these are no decimal marks"},
     {"kName", ": name every column, or begin the line with '#' if it is a comment"},
     {"kTooMany",
-     " is one cell too many: the table has 2 columns; leave out commas that separate thousands, "
+     ": one cell too many: the table has 2 columns; leave out commas that separate thousands, "
      "and separate the columns by ';' or tabs where commas are decimal marks"},
 };
 // Broken files, and what is said of each of them as loop.csv.
@@ -121,8 +121,8 @@ x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row has 2 cells of 3: complete it or remo
 #¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row has 1 cell of 2: complete it or remove it
 x,F¶1,"2¶"¶3,4¶5,z¶ | :2: a quotation mark opened here is never closed in its line
 "x¶[mm]",F¶1,2¶3,4¶ | :1: a quotation mark opened here is never closed in its line
-x,F¶1,2¶3,4,5¶6,7¶ | :3:3: '5' +kTooMany
-x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4: '5' +kTooMany
+x,F¶1,2¶3,4,5¶6,7¶ | :3:3 +kTooMany
+x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4 +kTooMany
 x,F¶.1,.2¶.3,".4¶.5,.6¶ | :3: a quotation mark opened here is never closed in its line
 ¶"x,F¶1,2¶3,4¶ | :2: a quotation mark opened here is never closed in its line
 x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for the 3 columns of line 2:

@@ -177,15 +177,15 @@ displacement ×10⁻³ (mm),F [N] | 1 | mm ×10⁻³
 displacement x1000 (mm),F [N] | 1 | mm x1000
 Displacement [mm] x1000,F [N] | 1 | mm x1000
 Displacement [mm] (x 0.001),F [N] | 1 | mm x 0.001
-Displacement E-3 [mm],F [N] | 1 | mm E-3
+Displacement E-3 [mm],F [N] | 1 | mm e-3
 x [mm],Force*10 | 2 | *10
 Displacement (0.01 mm),F [N] | 1 | 0.01 mm
 LVDT (5 mm),F [N] | 1 | 5 mm
 x [mm],Force cell 5 kN | 2 | 5 kN
 x [mm],Force (% FS) | 2 | % FS
 x [mm],Force % | 2 | %
-angle [rad],torque_percent | 2 | percent
-x [mm],Normalized force | 2 | normalized
+angle [rad],torque_percent | 2 | 1, of a ratio
+x [mm],Normalized force | 2 | 1, of a ratio
 x [&micro;m],F [N] | 1 | &micro;m
 x [?m],F [N] | 1 | ?m
 )names";
@@ -241,8 +241,8 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
                            "Coeficiente de fricción", "Q/P", "Friction"}) {
     const std::string text = "x [mm]," + (name + rows);
     EXPECT_THAT(Refusal(text, Choose("1", "2")),
-                AllOf(StartsWith("loop.csv:1:2: the unit 'coefficient of friction' of '" +
-                                 std::string(name) + "' (column 2) is not known for the force"),
+                AllOf(StartsWith("loop.csv:1:2: the unit '1, of a ratio' of '" + std::string(name) +
+                                 "' (column 2) is not known for the force"),
                       HasSubstr("or with a factor '#2*0.001 [N]'")));
     EXPECT_EQ(Read(text, Choose("1", "#2*50 [N]")).record.force.front(), 5.0);
     EXPECT_EQ(Read(text, Choose("1", "2 [N]")).record.force.front(), 0.1);
@@ -252,10 +252,10 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
   for (const char* names :
        {"Load [N],Friction,x [mm]", "荷重(N),f,変位(mm)", "Last,Reibungszahl,Weg"}) {
     EXPECT_THAT(Refusal(names + std::string("\n50,0.1,0\n51,0.3,1\n50,-0.3,0\n")),
-                HasSubstr("coefficient of friction"))
+                HasSubstr("of a ratio"))
         << names;
   }
-  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("coefficient of friction"));
+  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("of a ratio"));
 }
 
 TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
