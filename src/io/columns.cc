@@ -134,6 +134,14 @@ void FindWord(Column& column) {
   column.other_words = CountWords(words) - std::min(CountWords(words), std::get<0>(best));
 }
 
+/// The text in brackets, or the cell itself: "[mm]", "(mm)" and "mm" are "mm".
+std::string_view WithoutBrackets(std::string_view cell) {
+  cell = Trimmed(cell);
+  const bool bracketed = cell.size() >= 2 && ((cell.front() == '[' && cell.back() == ']') ||
+                                              (cell.front() == '(' && cell.back() == ')'));
+  return bracketed ? Trimmed(cell.substr(1, cell.size() - 2)) : cell;
+}
+
 /// True for a text in brackets that can only be meant as a unit, though none that is known:
 /// "furlong" and "% FS", but neither "23.8 N" nor "in contact".
 bool MayBeUnit(std::string_view text) {
@@ -225,14 +233,14 @@ void RequireNoFactor(Column& column) {
 }
 
 /// Describes how numbers behave.
-void Observe(const std::vector<double>& values, Column& column) {
+void ObserveValues(Column& column) {
   constexpr double kGoodPart = 0.4;
   double least = std::numeric_limits<double>::infinity();
   double greatest = -least;
   double rise = 0.0;
   double fall = 0.0;
   std::size_t numbers = 0;
-  for (const double value : values) {
+  for (const double value : column.values) {
     if (!std::isfinite(value)) continue;
     if (numbers++ == 0) column.first = value;
     least = std::min(least, value);
@@ -240,7 +248,7 @@ void Observe(const std::vector<double>& values, Column& column) {
     rise = std::max(rise, value - least);
     fall = std::max(fall, greatest - value);
   }
-  column.is_numeric = !values.empty() && 2 * numbers >= values.size();
+  column.is_numeric = !column.values.empty() && 2 * numbers >= column.values.size();
   column.least = least;
   column.greatest = greatest;
   column.trend = int{rise > 0 && fall == 0} - int{fall > 0 && rise == 0};
@@ -270,22 +278,25 @@ std::optional<bool> Column::IsAngular(std::string_view given_unit) const {
   return is_angular ? std::optional(true) : std::nullopt;
 }
 
-Column ReadName(std::string_view header) {
-  Column column{.name = WithNarrowLetters(Trimmed(header))};
+Column ReadName(std::string_view header, std::string_view below) {
+  Column column{.header = std::string(header), .name = WithNarrowLetters(Trimmed(header))};
   std::string& name = column.name;
   name.resize(std::min(name.find(" PI: "), name.size()));  // of Abaqus: a label of a point
   TakeUnitInBrackets(column);
   if (column.unit.empty()) TakeUnitAmongWords(column);
   RequireNoFactor(column);
   FindWord(column);
+  below = WithoutBrackets(below);
+  if (column.unit.empty()) {
+    column.unit = below;
+  } else if (!below.empty() && below != column.unit) {
+    column.unit += fmt::format(" or {}", below);
+  }
+  // "millis"
+  const bool is_unit = column.names(Role::kTime) && DimensionOf(name) == Dimension::kTime;
+  if (column.unit.empty() && is_unit) column.unit = name;
+  column.dimension = DimensionOf(column.unit);
   return column;
-}
-
-std::string_view WithoutBrackets(std::string_view cell) {
-  cell = Trimmed(cell);
-  const bool bracketed = cell.size() >= 2 && ((cell.front() == '[' && cell.back() == ']') ||
-                                              (cell.front() == '(' && cell.back() == ')'));
-  return bracketed ? Trimmed(cell.substr(1, cell.size() - 2)) : cell;
 }
 
 bool LooksLikeUnit(std::string_view cell) {
@@ -300,84 +311,23 @@ std::size_t CountKnownWords(std::span<const std::string> cells) {
   }));
 }
 
-Columns::Columns(const CsvTable& table) : table_(table) {
-  reserve(table.columns.size());
-  for (const TableColumn& of : table.columns) {
-    Column& added = emplace_back(ReadName(of.name));
-    Observe(of.values, added);
-    const std::string_view below = WithoutBrackets(of.unit);
-    if (added.unit.empty()) {
-      added.unit = below;
-    } else if (!below.empty() && below != added.unit) {
-      added.unit += fmt::format(" or {}", below);
-    }
-    // "millis"
-    const bool is_unit = added.names(Role::kTime) && DimensionOf(added.name) == Dimension::kTime;
-    if (added.unit.empty() && is_unit) added.unit = added.name;
-    added.dimension = DimensionOf(added.unit);
-    added.is_clock = of.is_clock;
-  }
-  FindLoadOfFriction();
-}
-
-void Columns::FindLoadOfFriction() {
+void Observe(std::vector<Column>& columns) {
+  for (Column& column : columns) ObserveValues(column);
   constexpr double kGreatestCoefficient = 2;
   const bool has_force = std::ranges::any_of(
-      *this, [](const Column& of) { return of.dimension == Dimension::kForce; });
+      columns, [](const Column& of) { return of.dimension == Dimension::kForce; });
   bool has_friction = false;
-  for (Column& of : *this) {
+  for (Column& of : columns) {
     const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
                         of.greatest < kGreatestCoefficient;
     if (may_be && (of.word == "friction" || of.word == "f")) of.is_ratio = true;
     has_friction = has_friction || of.is_ratio || (of.names(Role::kForce) && of.rank == 0);
   }
-  for (Column& of : *this) {
+  for (Column& of : columns) {
     const bool is_load =
         of.names(Role::kForce) && of.rank == 2 && !of.is_angular && of.other_words == 0;
     if (has_friction && is_load) of.role = Role::kNormalLoad;
   }
-}
-
-std::optional<std::size_t> Columns::Named(std::string_view name, Role role) const {
-  const std::string lower = LowerCase(name);
-  for (const bool exactly : {true, false}) {
-    std::optional<std::size_t> found;
-    for (std::size_t column = 0; column < size() && !name.empty(); ++column) {
-      const std::string& full = table_.columns[column].name;
-      const bool is_one =
-          exactly ? full == name : LowerCase(full) == lower || LowerCase(at(column).name) == lower;
-      if (is_one && found) ThrowAmbiguous(role, *found, column);
-      if (is_one) found = column;
-    }
-    if (found) return found;
-  }
-  return std::nullopt;
-}
-
-std::string Columns::Label(std::size_t column) const {
-  const std::string& name = table_.columns[column].name;
-  if (table_.header_line == 0 || name.empty()) return fmt::format("column {}", column + 1);
-  return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
-}
-
-std::string Columns::Listing() const {
-  if (std::ranges::all_of(table_.columns, [](auto& column) { return column.name.empty(); })) {
-    return fmt::format("the file names none of its {} columns", size());
-  }
-  std::vector<std::string> listed;
-  for (const TableColumn& column : table_.columns) {
-    listed.push_back(fmt::format("'{}' ({})", ForMessage(column.name), listed.size() + 1));
-  }
-  return fmt::format("the columns are {}", fmt::join(listed, ", "));
-}
-
-std::string Columns::Header() const {
-  return fmt::format("{}:{}", table_.file, table_.header_line);
-}
-
-void Columns::ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const {
-  Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
-         Label(one), Label(other), RulesOf(role).name, RulesOf(role).option, one + 1);
 }
 
 }  // namespace mindahl::io

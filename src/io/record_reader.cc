@@ -9,22 +9,21 @@
 #include <numeric>
 #include <utility>
 
-#include "io/columns.h"
+#include "io/roles.h"
 #include "io/source.h"
-#include "io/table.h"
 
 namespace mindahl::io {
 namespace {
 
 /// Refuses numbers of a register whose bit 1024 is a sign: none lies in the upper half of those
 /// below it, and there are some on both sides.
-void RequireNoSignBit(const Columns& columns, const Quantity& quantity) {
+void RequireNoSignBit(const CsvTable& table, const Quantity& quantity) {
   constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
-  const Column& of = columns[column];
+  const Column& of = table.columns[column];
   if (of.least < 0 || of.least >= kBit / 2 || of.greatest < kBit || of.greatest >= 2 * kBit) return;
   double below = 0.0;
-  for (const double value : columns.table().columns[column].values) {
+  for (const double value : of.values) {
     if (std::isfinite(value) && value != std::floor(value)) return;
     if (value < kBit) below = std::max(below, value);
   }
@@ -32,8 +31,8 @@ void RequireNoSignBit(const Columns& columns, const Quantity& quantity) {
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
       "write signed numbers, {} - value where the value is {} or more",
-      columns.Header(), columns.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name,
-      kBit, kBit);
+      table.Header(), table.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name, kBit,
+      kBit);
 }
 
 }  // namespace
@@ -47,9 +46,8 @@ std::string LeftOutRows::InWords() const {
 class RecordBuilder {
  public:
   /// Assigns the columns, by the rows that the table has.
-  RecordBuilder(const Columns& columns, const RecordColumns& asked)
+  RecordBuilder(const CsvTable& table, const RecordColumns& asked)
       : skip_broken_(asked.skip_broken_rows) {
-    const CsvTable& table = columns.table();
     const std::optional<double>& rate = asked.sample_rate;
     if (rate && (!(*rate > 0) || !std::isfinite(*rate) || !asked.time.empty())) {
       Refuse("{}: --sample-rate {}: must be finite and > 0 Hz, and --time excludes it", table.file,
@@ -57,12 +55,12 @@ class RecordBuilder {
     }
     file_.name = table.file;
     file_.notes = table.notes;
-    quantities_ = AssignRoles(columns, asked, file_.notes);
+    quantities_ = AssignRoles(table, asked, file_.notes);
     for (const Quantity& quantity : quantities_) {
       const RoleRules& role = RulesOf(quantity.role);
       const std::size_t first = quantity.first_column();
       const bool is_plain = quantity.is_plain();
-      if (is_plain && quantity.role <= Role::kForce) RequireNoSignBit(columns, quantity);
+      if (is_plain && quantity.role <= Role::kForce) RequireNoSignBit(table, quantity);
       for (const Quantity::Term& term : quantity.terms) {
         if (table.columns[term.column].values.empty())
           static_cast<void>(table.Numbers(term.column));
@@ -70,7 +68,7 @@ class RecordBuilder {
           wanted_.push_back(term.column);
         }
       }
-      file_.*role.chosen = {.name = is_plain ? table.columns[first].name : asked.*role.given,
+      file_.*role.chosen = {.name = is_plain ? table.columns[first].header : asked.*role.given,
                             .index = first + 1,
                             .unit = quantity.unit.symbol,
                             .has_no_unit = quantity.has_no_unit};
@@ -141,7 +139,7 @@ class RecordBuilder {
   std::string FaultOf(const CsvTable& table, std::size_t row, bool is_whole,
                       bool& is_missing) const {
     for (const std::size_t column : wanted_) {
-      const TableColumn& of = table.columns[column];
+      const Column& of = table.columns[column];
       if (std::isfinite(of.values[row])) continue;
       is_missing = std::isnan(of.values[row]);
       return is_missing ? of.missing : of.broken;
@@ -165,10 +163,9 @@ namespace {
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
-void AddCovariates(const Columns& columns, const std::vector<std::string>& choices,
+void AddCovariates(const CsvTable& table, const std::vector<std::string>& choices,
                    RecordFile& file) {
-  const CsvTable& table = columns.table();
-  std::vector<bool> is_read(columns.size() + 1);  // by the number from 1
+  std::vector<bool> is_read(table.columns.size() + 1);  // by the number from 1
   const auto add = [&](std::size_t column, const std::string& name, bool may_be_constant) {
     const std::vector<double>& all = table.columns[column].values;
     std::vector<double> values;
@@ -180,25 +177,26 @@ void AddCovariates(const Columns& columns, const std::vector<std::string>& choic
         std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
     if (values.empty() || !is_whole || (!changes && !may_be_constant)) return false;
     file.record.covariates.push_back(
-        {.name = name, .unit = columns[column].unit, .values = std::move(values)});
+        {.name = name, .unit = table.columns[column].unit, .values = std::move(values)});
     is_read[column + 1] = true;
     return true;
   };
   is_read[file.displacement.index] = is_read[file.force.index] = true;
   for (const std::string& choice : choices) {
-    const std::size_t column = ReadCovariate(choice, columns);
+    const std::size_t column = ReadCovariate(choice, table);
     if (is_read[column + 1]) {
       Refuse("{}: {} is used already: choose another column for the covariate", table.file,
-             columns.Label(column));
+             table.Label(column));
     }
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
   is_read[file.time.index] = is_read[file.normal_load.index] = true;
   const std::size_t most = choices.size() + kMostOtherColumns;
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    const std::string& name = columns[column].name;
-    const bool is_one = !name.empty() && std::ranges::count(columns, name, &Column::name) == 1;
-    if (is_read[column + 1] || columns[column].is_clock) continue;
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    const std::string& name = table.columns[column].name;
+    const bool is_one =
+        !name.empty() && std::ranges::count(table.columns, name, &Column::name) == 1;
+    if (is_read[column + 1] || table.columns[column].is_clock) continue;
     if (file.record.covariates.size() == most) return;
     add(column, is_one ? name : std::to_string(column + 1), false);
   }
@@ -210,8 +208,8 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other) {
     Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
            table.file, table.rows(), other.file, other.rows());
   }
-  const auto time = BestColumn(Columns(table), Role::kTime);
-  const auto its_time = BestColumn(Columns(other), Role::kTime);
+  const auto time = BestColumn(table, Role::kTime);
+  const auto its_time = BestColumn(other, Role::kTime);
   if (time && its_time && table.columns[*time].values != other.columns[*its_time].values) {
     Refuse("--with: {} and {} have different times: give the values of one at those of the other",
            table.file, other.file);
@@ -221,11 +219,11 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other) {
   table.notes.push_back(
       fmt::format("{}: its columns follow those of {}, row by row", other.file, table.file));
   table.header_line = std::max<std::size_t>(table.header_line, 1);
+  Observe(table.columns);
 }
 
 RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
-  const Columns columns(table);
-  RecordBuilder builder(columns, asked);
+  RecordBuilder builder(table, asked);
   Samples samples;
   std::string fault = builder.Add(table, samples);
   RecordFile& file = builder.file();
@@ -234,7 +232,7 @@ RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
   if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
-  AddCovariates(columns, asked.covariates, file);
+  AddCovariates(table, asked.covariates, file);
   return std::move(file);
 }
 
@@ -263,8 +261,8 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
       Refuse("{}: '{}' has {} rows and '{}' {}: give as many of both", table.file,
              columns.front().name, table.rows(), name, values.size());
     }
-    TableColumn& added = table.columns.emplace_back(
-        TableColumn{.name = name, .values = {values.begin(), values.end()}});
+    Column& added = table.columns.emplace_back(ReadName(name));
+    added.values.assign(values.begin(), values.end());
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (std::isfinite(values[row])) continue;
       std::string& said = std::isnan(values[row]) ? added.missing : added.broken;
@@ -272,23 +270,23 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
       said = fmt::format("{}:{}:{}: holds no number", table.file, row + 1, table.columns.size());
     }
   }
+  Observe(table.columns);
   return RecordIn(table, asked);
 }
 
 std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
                                         const std::string& column) {
   const CsvTable table = ReadCsvTable(path);
-  const Columns columns(table);
-  Quantity displacement = ReadQuantity(column, columns, Role::kDisplacement);
+  Quantity displacement = ReadQuantity(column, table, Role::kDisplacement);
   if (displacement.terms.empty()) {
     const bool first_is_another =
-        BestColumn(columns, Role::kTime) == 0U || BestColumn(columns, Role::kForce) == 0U;
-    const auto best = first_is_another ? BestColumn(columns, Role::kDisplacement) : std::nullopt;
+        BestColumn(table, Role::kTime) == 0U || BestColumn(table, Role::kForce) == 0U;
+    const auto best = first_is_another ? BestColumn(table, Role::kDisplacement) : std::nullopt;
     displacement.terms = {{best.value_or(0)}};
   }
-  const Column& first = columns[displacement.first_column()];
+  const Column& first = table.columns[displacement.first_column()];
   std::vector<std::string> notes;  // SI is the documented default here
-  FindUnitOf(displacement, columns, first.IsAngular(displacement.given_unit) == true, notes);
+  FindUnitOf(displacement, table, first.IsAngular(displacement.given_unit) == true, notes);
   for (const auto& term : displacement.terms) static_cast<void>(table.Numbers(term.column));
   std::vector<double> values(table.rows());
   for (std::size_t row = 0; row < values.size(); ++row) {
@@ -302,7 +300,7 @@ struct RecordStream::State {
       : pieces(path, asked.encoding),
         rows(pieces.Next()),
         layout(FindLayout(rows, NameOfInput(path))),
-        builder(Columns(FirstRows()), asked),
+        builder(FirstRows(), asked),
         reader(layout, builder.wanted()) {
     if (!asked.with.empty()) {
       Refuse("--with: a record that is read in pieces is of one file: join them before");
@@ -317,6 +315,7 @@ struct RecordStream::State {
   CsvTable FirstRows() const {
     TableReader first(layout);
     first.Read(rows.substr(layout.data_offset));
+    Observe(first.table().columns);
     return std::move(first.table());
   }
 

@@ -1,3 +1,5 @@
+#include "io/roles.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 
 #include "core/refuse.h"
 #include "core/text.h"
-#include "io/columns.h"
 
 namespace mindahl::io {
 namespace {
@@ -61,18 +62,18 @@ std::string UnitOfStamp(double number) {
 
 class RoleAssigner {
  public:
-  RoleAssigner(const Columns& columns, std::vector<std::string>& notes)
-      : columns_(columns), file_(columns.table().file), notes_(notes), taken_(columns.size()) {}
+  RoleAssigner(const CsvTable& table, std::vector<std::string>& notes)
+      : table_(table), file_(table.file), notes_(notes), taken_(table.columns.size()) {}
 
   std::vector<Quantity> Assign(const RecordColumns& asked) && {
     const bool has_load = asked.normal_load != "none";
     for (const Role role : {Role::kDisplacement, Role::kForce, Role::kTime, Role::kNormalLoad}) {
       const bool is_none = role == Role::kNormalLoad && !has_load;
-      roles_.push_back(ReadQuantity(is_none ? "" : asked.*RulesOf(role).given, columns_, role));
+      roles_.push_back(ReadQuantity(is_none ? "" : asked.*RulesOf(role).given, table_, role));
       for (const Quantity::Term& term : roles_.back().terms) {
         if (taken_[term.column]) {
           Refuse("{}: {} is chosen for the {} and for another quantity: choose two columns", file_,
-                 columns_.Label(term.column), RulesOf(role).name);
+                 table_.Label(term.column), RulesOf(role).name);
         }
         taken_[term.column] = true;
       }
@@ -82,7 +83,7 @@ class RoleAssigner {
     if (!asked.sample_rate) TakeBest(Role::kTime);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     for (const std::string& covariate : asked.covariates) {
-      taken_[ReadCovariate(covariate, columns_)] = true;
+      taken_[ReadCovariate(covariate, table_)] = true;
     }
     if (has_load) TakeBest(Role::kNormalLoad);
     TakeLeft();
@@ -92,14 +93,17 @@ class RoleAssigner {
     const bool is_torsional = std::ranges::any_of(
         kPair, [this](Role role) { return ColumnOf(role).IsAngular(Of(role).given_unit) == true; });
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
-    for (Quantity& quantity : roles_) FindUnitOf(quantity, columns_, is_torsional, notes_);
+    for (Quantity& quantity : roles_) FindUnitOf(quantity, table_, is_torsional, notes_);
     return std::move(roles_);
   }
 
  private:
   Quantity& Of(Role role) { return roles_.at(static_cast<std::size_t>(role)); }
   bool IsMissing(Role role) { return Of(role).terms.empty(); }
-  const Column& ColumnOf(Role role) { return columns_[Of(role).first_column()]; }
+  std::size_t IndexOf(const Column& column) {
+    return static_cast<std::size_t>(&column - table_.columns.data());
+  }
+  const Column& ColumnOf(Role role) { return table_.columns[Of(role).first_column()]; }
   void Take(std::size_t column, Role role) {
     taken_[column] = true;
     Of(role).terms = {{column}};
@@ -112,16 +116,16 @@ class RoleAssigner {
   /// Takes the column with the best evidence, where none is given.
   void TakeBest(Role role) {
     if (!IsMissing(role)) return;
-    const std::optional<std::size_t> best = BestColumn(columns_, role, taken_);
+    const std::optional<std::size_t> best = BestColumn(table_, role, taken_);
     if (!best && !Of(role).given_unit.empty()) ThrowNoColumn(role);
     if (!best) return;
     Take(*best, role);
     const std::size_t next = *best + 1;
-    if (role == Role::kNormalLoad && columns_[*best].greatest < 0) {
+    if (role == Role::kNormalLoad && table_.columns[*best].greatest < 0) {
       Of(role).terms.front().weight = -1.0;
-      Note("normal load {} is negative throughout: its magnitude is taken", columns_.Label(*best));
-    } else if (role == Role::kTime && next < taken_.size() && columns_[*best].unit == "sec" &&
-               LowerCase(columns_.table().columns[next].name).ends_with("nanosec")) {
+      Note("normal load {} is negative throughout: its magnitude is taken", table_.Label(*best));
+    } else if (role == Role::kTime && next < taken_.size() && table_.columns[*best].unit == "sec" &&
+               LowerCase(table_.columns[next].name).ends_with("nanosec")) {
       Of(role).terms.push_back({next, 1e-9});  // of the same stamp
       Of(role).given_unit = "s";
       taken_[next] = true;
@@ -141,12 +145,12 @@ class RoleAssigner {
   /// @param other  the column of the other role
   Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
     Choice best;
-    for (std::size_t column = 0; column < columns_.size(); ++column) {
-      const Column& of = columns_[column];
+    for (std::size_t column = 0; column < table_.columns.size(); ++column) {
+      const Column& of = table_.columns[column];
       const bool is_given = !IsMissing(role) && column == Of(role).first_column();
       const int evidence = EvidenceFor(of, role);
       const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0 &&
-                           !columns_.table().columns[column].values.empty();
+                           !table_.columns[column].values.empty();
       const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
       if (!(is_given || is_free) || (turns && is_angular.value_or(*turns) != *turns)) continue;
       const int score = evidence + (of.goes_to_and_fro ? kMoving : 0);
@@ -177,13 +181,13 @@ class RoleAssigner {
     const auto& [line, turn, any] = pairs;
     if (std::min(line.score, turn.score) > kWeak && std::abs(line.score - turn.score) < kMoving &&
         line.of[0].column != turn.of[0].column && line.of[1].column != turn.of[1].column) {
-      columns_.ThrowAmbiguous(Role::kDisplacement, *line.of[0].column, *turn.of[0].column);
+      table_.ThrowAmbiguous(Role::kDisplacement, *line.of[0].column, *turn.of[0].column);
     }
     const Pair& pair = *std::ranges::max_element(pairs, {}, &Pair::score);
     for (const std::size_t k : {0U, 1U}) {
       const auto& [column, score, rival, moves] = pair.of[k];
       if (!column || !IsMissing(kPair[k])) continue;
-      if (rival) columns_.ThrowAmbiguous(kPair[k], *column, *rival);
+      if (rival) table_.ThrowAmbiguous(kPair[k], *column, *rival);
       if (moves) NoteThatItMoves(*column, kPair[k]);
       Take(*column, kPair[k]);
     }
@@ -191,13 +195,13 @@ class RoleAssigner {
 
   /// Says so where a column that has as much evidence of a role is not taken, as it rests.
   void NoteThatItMoves(std::size_t taken, Role role) {
-    const auto resting = std::ranges::find_if(columns_, [&](const Column& of) {
-      return !of.goes_to_and_fro && of.is_numeric && !taken_[columns_.IndexOf(of)] &&
-             EvidenceFor(of, role) >= EvidenceFor(columns_[taken], role);
+    const auto resting = std::ranges::find_if(table_.columns, [&](const Column& of) {
+      return !of.goes_to_and_fro && of.is_numeric && !taken_[IndexOf(of)] &&
+             EvidenceFor(of, role) >= EvidenceFor(table_.columns[taken], role);
     });
-    if (resting == columns_.end()) return;
-    Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name, columns_.Label(taken),
-         columns_.Label(columns_.IndexOf(*resting)));
+    if (resting == table_.columns.end()) return;
+    Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name, table_.Label(taken),
+         table_.Label(IndexOf(*resting)));
   }
 
   /// Gives what no name or unit decides to the columns of numbers that are left, if they are as
@@ -208,7 +212,7 @@ class RoleAssigner {
     if (missing.empty()) return;
     std::vector<std::size_t> left, moving;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
-      const Column& of = columns_[column];
+      const Column& of = table_.columns[column];
       const bool is_unknown = of.unit.empty() && of.word.empty() && !of.is_clock;
       if (taken_[column] || !is_unknown || !of.is_numeric) continue;
       left.push_back(column);
@@ -219,13 +223,13 @@ class RoleAssigner {
     for (std::size_t k = 0; k < left.size(); ++k) {
       Take(left[k], missing[k]);
       Note("no column name is recognised as {}: taken from {}{}", RulesOf(missing[k]).name,
-           columns_.Label(left[k]), left.size() > 1 ? ", of two in their order" : "");
+           table_.Label(left[k]), left.size() > 1 ? ", of two in their order" : "");
     }
   }
 
   [[noreturn]] void ThrowNoColumn(Role role) {
     Refuse("{}: no column for the {}: {}: choose it with {}, by name or number", file_,
-           RulesOf(role).name, columns_.Listing(), RulesOf(role).option);
+           RulesOf(role).name, table_.Listing(), RulesOf(role).option);
   }
 
   /// Refuses a column without a unit whose numbers are those of a clock or a counter, where those
@@ -240,12 +244,12 @@ class RoleAssigner {
     Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "
         "{} with {}, by name or number: {}",
-        file_, columns_.table().lines.front(), column + 1, columns_.Label(column),
-        of.trend > 0 ? "grows" : "falls", columns_.Label(Of(other).first_column()),
-        RulesOf(role).name, RulesOf(role).option, columns_.Listing());
+        file_, table_.lines.front(), column + 1, table_.Label(column),
+        of.trend > 0 ? "grows" : "falls", table_.Label(Of(other).first_column()),
+        RulesOf(role).name, RulesOf(role).option, table_.Listing());
   }
 
-  const Columns& columns_;
+  const CsvTable& table_;
   const std::string& file_;
   std::vector<std::string>& notes_;
   std::vector<bool> taken_;
@@ -254,24 +258,24 @@ class RoleAssigner {
 
 /// Returns the column of a number from 1.
 /// @param where  it stands, for the refusal of one that there is not
-std::size_t Numbered(std::size_t number, const Columns& columns, const std::string& where) {
-  if (number >= 1 && number <= columns.size()) return number - 1;
-  Refuse("{}: there is no column {}: the file has {} column{}", where, number, columns.size(),
-         columns.size() == 1 ? "" : "s");
+std::size_t Numbered(std::size_t number, const CsvTable& table, const std::string& where) {
+  if (number >= 1 && number <= table.columns.size()) return number - 1;
+  Refuse("{}: there is no column {}: the file has {} column{}", where, number, table.columns.size(),
+         table.columns.size() == 1 ? "" : "s");
 }
 
 /// Returns the column of a name, or of a number behind '#'.
-std::size_t ColumnIn(std::string_view name, const Columns& columns, const std::string& where,
+std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
                      Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
-  if (number) return Numbered(*number, columns, where);
-  if (const auto named = columns.Named(name, role)) return *named;
+  if (number) return Numbered(*number, table, where);
+  if (const auto named = table.Named(name, role)) return *named;
   Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
-         columns.Listing());
+         table.Listing());
 }
 
 /// Reads a sum of products, each of numbers and at most one column.
-void ReadSum(std::string_view rest, const Columns& columns, const std::string& where,
+void ReadSum(std::string_view rest, const CsvTable& table, const std::string& where,
              Quantity& sum) {
   constexpr std::string_view kOperators = "+-*";
   const auto require = [&](bool is_sum) {
@@ -299,7 +303,7 @@ void ReadSum(std::string_view rest, const Columns& columns, const std::string& w
       } else {
         size = std::min(rest.find_first_of(kOperators), rest.size());
         require(size > 0 && !column);
-        column = ColumnIn(Trimmed(rest.substr(0, size)), columns, where, sum.role);
+        column = ColumnIn(Trimmed(rest.substr(0, size)), table, where, sum.role);
       }
       take(size);
       goes_on = rest.starts_with('*');
@@ -314,13 +318,12 @@ void ReadSum(std::string_view rest, const Columns& columns, const std::string& w
 
 }  // namespace
 
-Quantity ReadQuantity(const std::string& given, const Columns& columns, Role role) {
+Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role) {
   Quantity quantity{.role = role};
   std::string_view text = Trimmed(given);
   if (text.empty()) return quantity;
-  const std::string where =
-      fmt::format("{}: {} {}", columns.table().file, RulesOf(role).option, given);
-  const auto named = NumberIn<std::size_t>(text) ? std::nullopt : columns.Named(text, role);
+  const std::string where = fmt::format("{}: {} {}", table.file, RulesOf(role).option, given);
+  const auto named = NumberIn<std::size_t>(text) ? std::nullopt : table.Named(text, role);
   if (named) {
     quantity.terms = {{*named}};
     return quantity;
@@ -330,26 +333,26 @@ Quantity ReadQuantity(const std::string& given, const Columns& columns, Role rol
     text = Trimmed(text.substr(0, open));
   }
   if (const auto number = NumberIn<std::size_t>(text)) {
-    quantity.terms = {{Numbered(*number, columns, where)}};
+    quantity.terms = {{Numbered(*number, table, where)}};
   } else if (!text.empty()) {
-    ReadSum(text, columns, where, quantity);
+    ReadSum(text, table, where, quantity);
   }
   return quantity;
 }
 
-std::size_t ReadCovariate(const std::string& text, const Columns& columns) {
-  const Quantity chosen = ReadQuantity(text, columns, Role::kOther);
+std::size_t ReadCovariate(const std::string& text, const CsvTable& table) {
+  const Quantity chosen = ReadQuantity(text, table, Role::kOther);
   if (chosen.is_plain()) return chosen.first_column();
-  Refuse("{}: --covariate {}: must be one column", columns.table().file, text);
+  Refuse("{}: --covariate {}: must be one column", table.file, text);
 }
 
-std::optional<std::size_t> BestColumn(const Columns& columns, Role role,
+std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
                                       const std::vector<bool>& taken) {
   std::optional<std::size_t> best;
   int most = 0;
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    if ((!taken.empty() && taken[column]) || !columns[column].is_numeric) continue;
-    const int evidence = EvidenceFor(columns[column], role);
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    if ((!taken.empty() && taken[column]) || !table.columns[column].is_numeric) continue;
+    const int evidence = EvidenceFor(table.columns[column], role);
     if (evidence <= most) continue;
     most = evidence;
     best = column;
@@ -357,14 +360,14 @@ std::optional<std::size_t> BestColumn(const Columns& columns, Role role,
   return best;
 }
 
-void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
+void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
                 std::vector<std::string>& notes) {
   const RoleRules& rules = RulesOf(quantity.role);
   const Dimension dimension = is_torsional ? rules.angular : rules.linear;
-  const std::string& file = columns.table().file;
+  const std::string& file = table.file;
   const std::size_t first = quantity.first_column();
-  const Column& of = columns[first];
-  const std::string label = columns.Label(first);
+  const Column& of = table.columns[first];
+  const std::string label = table.Label(first);
   const bool is_time = quantity.role == Role::kTime;
   const bool is_clock = is_time && of.is_clock;
   const std::string of_stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
@@ -375,7 +378,7 @@ void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
   bool is_certain = is_given;
   if (!is_given) symbol = of.is_ratio ? "1, of a ratio" : of.unit;
   for (const Quantity::Term& term : quantity.terms) {
-    const std::string& other = columns[term.column].unit;
+    const std::string& other = table.columns[term.column].unit;
     if (is_given || other == of.unit) continue;
     symbol += fmt::format(" and {}", other);
     is_certain = true;
@@ -389,7 +392,7 @@ void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",
-        is_given ? file : fmt::format("{}:{}", columns.Header(), first + 1), symbol, label,
+        is_given ? file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
         rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
   } else {
     if (symbol.empty()) {
@@ -407,9 +410,9 @@ void FindUnitOf(Quantity& quantity, const Columns& columns, bool is_torsional,
       fmt::format("{}: time {} holds dates or times of day: counted from the first", file, label));
 }
 
-std::vector<Quantity> AssignRoles(const Columns& columns, const RecordColumns& asked,
+std::vector<Quantity> AssignRoles(const CsvTable& table, const RecordColumns& asked,
                                   std::vector<std::string>& notes) {
-  return RoleAssigner(columns, notes).Assign(asked);
+  return RoleAssigner(table, notes).Assign(asked);
 }
 
 }  // namespace mindahl::io

@@ -1,6 +1,7 @@
 #include "io/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <utility>
 
 #include "core/text.h"
-#include "io/columns.h"
 #include "io/source.h"
 
 namespace mindahl::io {
@@ -136,18 +136,17 @@ class Reading {
     FindData();
     FindNames();
     if (data_ == 0) FindNamesIn(comment);
-    std::vector<TableColumn>& columns = layout_.header.columns;
-    columns.resize(std::max({columns_, names_.size(), units_.size()}));
-    layout_.holds_numbers.resize(columns.size());
-    layout_.mostly_numbers.resize(columns.size());
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (k < names_.size()) columns[k].name = names_[k];
-      if (k < units_.size()) columns[k].unit = units_[k];
-      // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
-      const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
-      if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
-        columns[k - 1].unit = columns[k].name;
-      }
+    const std::size_t columns = std::max({columns_, names_.size(), units_.size()});
+    for (auto* const of_each : {&names_, &units_}) of_each->resize(columns);
+    layout_.holds_numbers.resize(columns);
+    layout_.mostly_numbers.resize(columns);
+    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+    for (std::size_t k = 1; k < columns; ++k) {
+      const bool may_be = layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
+      if (may_be && units_[k - 1].empty() && LooksLikeUnit(names_[k])) units_[k - 1] = names_[k];
+    }
+    for (std::size_t k = 0; k < columns; ++k) {
+      layout_.header.columns.push_back(ReadName(names_[k], units_[k]));
     }
     return std::move(layout_);
   }
@@ -272,15 +271,56 @@ class Reading {
 }  // namespace
 
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
-  const TableColumn& of = columns.at(column);
+  const Column& of = columns.at(column);
   if (of.values.empty()) {
     Refuse("{}:{}:{}: '{}' (column {}) holds no numbers", file,
-           lines.empty() ? header_line : lines.front(), column + 1, ForMessage(of.name),
+           lines.empty() ? header_line : lines.front(), column + 1, ForMessage(of.header),
            column + 1);
   }
   if (!of.broken.empty()) throw InputError(of.broken);
   if (!of.missing.empty()) throw InputError(of.missing);
   return of.values;
+}
+
+std::optional<std::size_t> CsvTable::Named(std::string_view name, Role role) const {
+  const std::string lower = LowerCase(name);
+  for (const bool exactly : {true, false}) {
+    std::optional<std::size_t> found;
+    for (std::size_t column = 0; column < columns.size() && !name.empty(); ++column) {
+      const std::string& full = columns[column].header;
+      const bool is_one =
+          exactly ? full == name
+                  : LowerCase(full) == lower || LowerCase(columns[column].name) == lower;
+      if (is_one && found) ThrowAmbiguous(role, *found, column);
+      if (is_one) found = column;
+    }
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
+std::string CsvTable::Label(std::size_t column) const {
+  const std::string& name = columns[column].header;
+  if (header_line == 0 || name.empty()) return fmt::format("column {}", column + 1);
+  return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
+}
+
+std::string CsvTable::Listing() const {
+  if (std::ranges::all_of(columns, [](auto& column) { return column.header.empty(); })) {
+    return fmt::format("the file names none of its {} columns", columns.size());
+  }
+  std::vector<std::string> listed;
+  for (const Column& column : columns) {
+    listed.push_back(fmt::format("'{}' ({})", ForMessage(column.header), listed.size() + 1));
+  }
+  return fmt::format("the columns are {}", fmt::join(listed, ", "));
+}
+
+std::string CsvTable::Header() const { return fmt::format("{}:{}", file, header_line); }
+
+void CsvTable::ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const {
+  Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
+         Label(one), Label(other), RulesOf(role).name, RulesOf(role).option, one + 1);
 }
 
 Layout FindLayout(std::string_view text, const std::string& file) {
@@ -323,7 +363,7 @@ TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& w
 
 void TableReader::Clear() {
   table_.lines.clear();
-  for (TableColumn& column : table_.columns) {
+  for (Column& column : table_.columns) {
     column.values.clear();
     column.broken.clear();
     column.missing.clear();
@@ -390,7 +430,7 @@ void TableReader::ReadRow(std::string_view row) {
 void TableReader::Break(const std::string& fault, std::size_t column) {
   for (; column < is_wanted_.size(); ++column) {
     if (!is_wanted_[column]) continue;
-    TableColumn& of = table_.columns[column];
+    Column& of = table_.columns[column];
     of.values.resize(table_.lines.size());
     of.values.back() = kBroken;
     if (of.broken.empty()) of.broken = fault;
@@ -400,7 +440,7 @@ void TableReader::Break(const std::string& fault, std::size_t column) {
 /// Returns the value of a cell that is not plainly a number.
 double TableReader::ReadText(std::size_t column, std::string_view text) {
   const Cell cell = ReadCell(text, layout_.decimal_mark);
-  TableColumn& of = table_.columns[column];
+  Column& of = table_.columns[column];
   of.is_clock = of.is_clock || cell.is_clock;
   if (cell.kind == Cell::Kind::kNumber) return cell.value;
   const bool is_missing = cell.kind == Cell::Kind::kMissing;
@@ -456,6 +496,7 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   }
   reader.EndText();
   CsvTable table = std::move(reader.table());
+  Observe(table.columns);
   if (table.repeats > 0) {
     table.notes.push_back(
         fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,

@@ -9,25 +9,14 @@
 #include <vector>
 
 #include "io/cells.h"
+#include "io/columns.h"
 
 namespace mindahl::io {
-
-/// A column of a table.
-struct TableColumn {
-  std::string name = {};  ///< header cell as written, "" without one
-  std::string unit = {};  ///< cell of the units row, "" without one
-  /// One a row; none in a column of text. NaN where the cell is empty or holds a mark of a missing
-  /// number, infinite where it or its row is at fault otherwise.
-  std::vector<double> values = {};
-  bool is_clock = false;  ///< its numbers are times of day [s]
-  /// Say of the first NaN, and of the first infinite value: "file:line:column: …".
-  std::string missing = {}, broken = {};
-};
 
 /// A delimited text of columns. Positions in messages are `file:line:column`, counted from 1.
 struct CsvTable {
   std::string file;
-  std::vector<TableColumn> columns = {};
+  std::vector<Column> columns = {};
   std::vector<std::size_t> lines = {};  ///< the physical line of each row
   std::size_t repeats = 0;              ///< of the header, among the rows
   std::size_t header_line = 0;          ///< physical line of the header, 0 when there is none
@@ -38,6 +27,17 @@ struct CsvTable {
   /// Returns the numbers of a column, one a row, valid as long as the table.
   /// @throws InputError at the first cell that is missing or is not a number
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
+  /// Returns the column of a name, from 0; empty where there is none.
+  /// @throws InputError where it is that of several
+  [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
+  /// "'x [mm]' (column 2)", or "column 2" without a header.
+  [[nodiscard]] std::string Label(std::size_t column) const;
+  /// "the columns are 'x' (1), 'F' (2)".
+  [[nodiscard]] std::string Listing() const;
+  /// "file:line" of the header.
+  [[nodiscard]] std::string Header() const;
+  /// Refuses two columns for one role.
+  [[noreturn]] void ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const;
 };
 
 /// How a text is to be read as a table.

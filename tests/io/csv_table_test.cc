@@ -17,10 +17,10 @@ CsvTable Parse(const std::string& text) {
 }
 
 /// Returns "x;F"; "" where all cells are empty.
-std::string CellsOf(const CsvTable& table, std::string TableColumn::*member) {
+std::string CellsOf(const CsvTable& table, std::string mindahl::io::Column::*member) {
   std::string cells;
   bool has_any = false;
-  for (const TableColumn& column : table.columns) {
+  for (const mindahl::io::Column& column : table.columns) {
     cells += (cells.empty() ? "" : ";") + column.*member;
     has_any = has_any || !(column.*member).empty();
   }
@@ -46,7 +46,7 @@ x F¶0 0,5¶1,5 0,003¶-2 1E5¶ | x;F | -
 x,F␍¶0,.5␍¶1.5,3e-3␍¶-2,1E5␍¶ | x;F | -
 x,F¶0,.5¶1.5,3e-3¶-2,1E5 | x;F | -
 "x","F"¶"0",".5"¶1.5,"3e-3"¶-2," 1E5 "¶ | x;F | -
-"x, mm",F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x, mm;F | -
+"x, mm",F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x, mm;F | mm;
 # rig, 3¶x,F¶#1,2¶0,.5¶  # note¶1.5,3e-3¶-2,1E5¶#end¶ | x;F | -
 ¶¶x,F¶¶0,.5¶  →¶1.5,3e-3¶-2,1E5¶¶¶ | x;F | -
 x,F¶,¶0,.5¶1.5,3e-3¶,¶-2,1E5¶,¶ | x;F | -
@@ -54,7 +54,7 @@ sample_rate,200¶rig,A¶x,F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
 range,0,10¶x,F,c¶0,.5,1¶1.5,3e-3,1¶-2,1E5,1¶ | x;F;c | -
 Run 7, with oil, at night¶x,F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
 x,F¶mm,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | mm;N
-x→F¶[mm]→[N]¶¶0→.5¶1.5→3e-3¶-2→1E5¶ | x;F | [mm];[N]
+x→F¶[mm]→[N]¶¶0→.5¶1.5→3e-3¶-2→1E5¶ | x;F | mm;N
 x,F¶furlong,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | furlong;N
 mm,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | - | mm;N
 x,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;N | -
@@ -62,7 +62,7 @@ x,F¶0,.5,¶1.5,3e-3,¶-2,1E5,¶ | x;F | -
 x,F,¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
 x;F;¶0;.5;¶1.5;3e-3;¶-2;1E5;¶ | x;F | -
 0,.5¶1.5,3e-3¶-2,1E5¶ | - | -
-x [mm] F (N)¶0 .5¶1.5 3e-3¶-2 1E5¶ | x [mm];F (N) | -
+x [mm] F (N)¶0 .5¶1.5 3e-3¶-2 1E5¶ | x [mm];F (N) | mm;N
 pad position  normal load¶0 .5¶1.5 3e-3¶-2 1E5¶ | pad position;normal load | -
 x,F,state¶0,.5,ok¶1.5,3e-3,a;b¶-2,1E5,7¶ | x;F;state | -
 x;F;date¶0;0,5;2024-07-12 16:46:43¶1,5;0,003;2024-07-12 16:46:44¶-2;1E5;2024-07-12 16:46:45¶ |
@@ -74,8 +74,8 @@ TEST(CsvTable, IsTheSameInEveryFormat) {
   for (const Strings& format : RowsOf(kFormats)) {
     SCOPED_TRACE(format[0]);
     const CsvTable table = Parse(format[0]);
-    EXPECT_EQ(CellsOf(table, &TableColumn::name), format[1]);
-    EXPECT_EQ(CellsOf(table, &TableColumn::unit), format[2]);
+    EXPECT_EQ(CellsOf(table, &mindahl::io::Column::header), format[1]);
+    EXPECT_EQ(CellsOf(table, &mindahl::io::Column::unit), format[2]);
     ASSERT_GE(table.columns.size(), 2u);
     EXPECT_EQ(Column(table, 0), (Numbers{0, 1.5, -2}));
     EXPECT_EQ(Column(table, 1), (Numbers{0.5, 3e-3, 1e5}));
@@ -168,7 +168,8 @@ TEST(CsvTable, FindsColumnsRowsAndLines) {
   EXPECT_EQ(Column(Parse("1,5;2,5;3,5\n"), 2), (Numbers{3.5}));
   EXPECT_EQ(Column(Parse("1,5 2,5\n"), 1), (Numbers{2.5}));
   EXPECT_EQ(Column(Parse("displacement [m]\n0.5\n-1\n"), 0), (Numbers{0.5, -1}));
-  EXPECT_EQ(CellsOf(Parse("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n"), &TableColumn::name), "t;x;F;N");
+  EXPECT_EQ(CellsOf(Parse("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n"), &mindahl::io::Column::header),
+            "t;x;F;N");
   EXPECT_EQ(Parse("1,2\n").header_line, 0u);
   const CsvTable lines = Parse("rate,2\r\n\r\nx,\"F [N]\"\r\n\r\n#\r\n1,2\r\n\r\n3,4\r\n");
   EXPECT_EQ(lines.header_line, 3u);
@@ -247,7 +248,7 @@ TEST(CsvWriter, QuotesNamesSoThatTheyReadBackAsThemselves) {
   const std::string text = CsvText(columns);
   const CsvTable table = Parse(text);
   for (std::size_t k = 0; k < names.size(); ++k) {
-    EXPECT_EQ(table.columns[k].name, names[k]);
+    EXPECT_EQ(table.columns[k].header, names[k]);
   }
   EXPECT_EQ(text.substr(0, 22), "\"x, mm\",\"the \"\"pad\"\"\",");
   EXPECT_NE(text.find(",plain\n"), std::string::npos);
