@@ -141,55 +141,43 @@ class RoleAssigner {
     bool moves = false;
   };
 
-  /// @param turns  whether it is to be an angle or a torque; empty where that does not matter
+  /// @param turns  whether it is to be an angle or a torque
   /// @param other  the column of the other role
-  Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
+  Choice Best(Role role, bool turns, std::optional<std::size_t> other = {}) {
     Choice best;
     for (std::size_t column = 0; column < table_.columns.size(); ++column) {
       const Column& of = table_.columns[column];
       const bool is_given = !IsMissing(role) && column == Of(role).first_column();
       const int evidence = EvidenceFor(of, role);
-      const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0 &&
-                           !table_.columns[column].values.empty();
-      const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
-      if (!(is_given || is_free) || (turns && is_angular.value_or(*turns) != *turns)) continue;
-      const int score = evidence + (of.goes_to_and_fro ? kMoving : 0);
+      const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0;
+      const bool is_angular = of.IsAngular(Of(role).given_unit).value_or(turns);
+      if (!(is_given || is_free) || is_angular != turns) continue;
+      // A column of text is taken where there is no other, and refused by its first row.
+      const int score = of.values.empty() ? 1 : evidence + (of.goes_to_and_fro ? kMoving : 0);
       if (score == best.score) best.rival = column;
       if (score > best.score || is_given) best = {column, score, {}, of.goes_to_and_fro};
     }
     return best;
   }
 
-  /// Takes the displacement and the force of the most evidence before all others two that go
-  /// together, then two that do not, of which one has no unit of its role.
+  /// Takes the displacement and the force of the most evidence of those that go together.
   void FindPair() {
-    constexpr int kWeak = 60;  // two columns by words that are hardly any
-    constexpr int kMixed = 1'000'000;
-    struct Pair {
-      std::array<Choice, 2> of;
-      int score = 0;
-    };
-    std::array<Pair, 3> pairs;
-    const std::array<std::optional<bool>, 3> kinds = {false, true, std::nullopt};
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-      auto& [x, force] = pairs[k].of;
-      x = Best(kPair[0], kinds[k]);
-      force = Best(kPair[1], kinds[k], x.column);
-      pairs[k].score = x.score + force.score - (kinds[k] ? 0 : kMixed) -
-                       (x.column && force.column ? 0 : 2 * kMixed);
+    constexpr int kBoth = 1'000'000;
+    std::array<Choice, 2> best;
+    int most = -1;
+    for (const bool turns : {false, true}) {
+      const Choice x = Best(kPair[0], turns);
+      const Choice force = Best(kPair[1], turns, x.column);
+      const int score = x.score + force.score + (x.column && force.column ? kBoth : 0);
+      if (score > most) best = {x, force};
+      most = std::max(score, most);
     }
-    const auto& [line, turn, any] = pairs;
-    if (std::min(line.score, turn.score) > kWeak && std::abs(line.score - turn.score) < kMoving &&
-        line.of[0].column != turn.of[0].column && line.of[1].column != turn.of[1].column) {
-      table_.ThrowAmbiguous(Role::kDisplacement, *line.of[0].column, *turn.of[0].column);
-    }
-    const Pair& pair = *std::ranges::max_element(pairs, {}, &Pair::score);
     for (const std::size_t k : {0U, 1U}) {
-      const auto& [column, score, rival, moves] = pair.of[k];
-      if (!column || !IsMissing(kPair[k])) continue;
-      if (rival) table_.ThrowAmbiguous(kPair[k], *column, *rival);
-      if (moves) NoteThatItMoves(*column, kPair[k]);
-      Take(*column, kPair[k]);
+      const auto& [column, score, rival, moves] = best.at(k);
+      if (!column || !IsMissing(kPair.at(k))) continue;
+      if (rival) table_.ThrowAmbiguous(kPair.at(k), *column, *rival);
+      if (moves) NoteThatItMoves(*column, kPair.at(k));
+      Take(*column, kPair.at(k));
     }
   }
 
@@ -256,19 +244,17 @@ class RoleAssigner {
   std::vector<Quantity> roles_;  // in the order of Role
 };
 
-/// Returns the column of a number from 1.
+/// Returns the column of a name, or of a number from 1 behind '#'.
 /// @param where  it stands, for the refusal of one that there is not
-std::size_t Numbered(std::size_t number, const CsvTable& table, const std::string& where) {
-  if (number >= 1 && number <= table.columns.size()) return number - 1;
-  Refuse("{}: there is no column {}: the file has {} column{}", where, number, table.columns.size(),
-         table.columns.size() == 1 ? "" : "s");
-}
-
-/// Returns the column of a name, or of a number behind '#'.
 std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
                      Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
-  if (number) return Numbered(*number, table, where);
+  const std::size_t columns = table.columns.size();
+  if (number >= 1 && number <= columns) return *number - 1;
+  if (number) {
+    Refuse("{}: there is no column {}: the file has {} column{}", where, *number, columns,
+           columns == 1 ? "" : "s");
+  }
   if (const auto named = table.Named(name, role)) return *named;
   Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
          table.Listing());
@@ -321,22 +307,20 @@ void ReadSum(std::string_view rest, const CsvTable& table, const std::string& wh
 Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role) {
   Quantity quantity{.role = role};
   std::string_view text = Trimmed(given);
-  if (text.empty()) return quantity;
-  const std::string where = fmt::format("{}: {} {}", table.file, RulesOf(role).option, given);
-  const auto named = NumberIn<std::size_t>(text) ? std::nullopt : table.Named(text, role);
-  if (named) {
-    quantity.terms = {{*named}};
-    return quantity;
+  if (!NumberIn<std::size_t>(text)) {
+    if (const auto named = table.Named(text, role)) {
+      quantity.terms = {{*named}};
+      return quantity;
+    }
   }
   if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
     quantity.given_unit = Trimmed(text.substr(open + 1, text.size() - open - 2));
     text = Trimmed(text.substr(0, open));
   }
-  if (const auto number = NumberIn<std::size_t>(text)) {
-    quantity.terms = {{Numbered(*number, table, where)}};
-  } else if (!text.empty()) {
-    ReadSum(text, table, where, quantity);
-  }
+  // A number alone is that of a column.
+  const std::string sum = (NumberIn<std::size_t>(text) ? "#" : "") + std::string(text);
+  const std::string where = fmt::format("{}: {} {}", table.file, RulesOf(role).option, given);
+  if (!sum.empty()) ReadSum(sum, table, where, quantity);
   return quantity;
 }
 

@@ -242,11 +242,11 @@ class Reading {
     const Row& row = rows_[data_ - 1];
     Refuse(
         "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-        "every column, or begin the line with '#' if it is a comment{}",
-        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s", rows_[data_].line,
-        layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
-            ? "; or leave out commas that separate thousands or are decimal marks"
-            : "");
+        "every column, begin the line with '#' if it is a comment, or leave out commas that "
+        "separate "
+        "thousands",
+        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
+        rows_[data_].line);
   }
 
   /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.

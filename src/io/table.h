@@ -18,7 +18,7 @@ struct CsvTable {
   std::string file;
   std::vector<Column> columns = {};
   std::vector<std::size_t> lines = {};  ///< the physical line of each row
-  std::size_t repeats = 0;              ///< of the header, among the rows
+  std::size_t repeats = 0;              ///< number of times the header stands among the rows
   std::size_t header_line = 0;          ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
   std::vector<std::string> notes = {};  ///< sentences on what was assumed of the file

@@ -92,7 +92,9 @@ const std::map<std::string, std::string> kEnds = {
     {"kExpected",
      ": expected columns of numbers under an optional header, between tabs, ';', blanks, or commas "
      "where these are no decimal marks"},
-    {"kName", ": name every column, or begin the line with '#' if it is a comment"},
+    {"kName",
+     ": name every column, begin the line with '#' if it is a comment, or leave out commas that "
+     "separate thousands"},
     {"kTooMany",
      ": one cell too many: the table has 2 columns; leave out commas that separate thousands, "
      "and separate the columns by ';' or tabs where commas are decimal marks"},
@@ -126,8 +128,8 @@ x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4 +kTooMany
 x,F¶.1,.2¶.3,".4¶.5,.6¶ | :3: a quotation mark opened here is never closed in its line
 ¶"x,F¶1,2¶3,4¶ | :2: a quotation mark opened here is never closed in its line
 x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for the 3 columns of line 2:
-   name every column, or begin the line with '#' if it is a comment; or leave out commas that
-   separate thousands or are decimal marks
+   name every column, begin the line with '#' if it is a comment, or leave out commas that separate
+   thousands
 Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a header for the 2
    columns of line 2 +kName
 x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for the 2 columns of line

@@ -226,11 +226,6 @@ TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
   EXPECT_THAT(Refusal("Position [mm],Present Load\n0,3\n1,121\n-1,1025\n1,1100\n2,7\n"),
               HasSubstr("'Present Load' (column 2) holds no value between 121 and 1023, as a "
                         "register whose bit 1024 is the sign of the force"));
-  EXPECT_THAT(
-      Refusal("Axial Displacement (mm),Axial Force (N),Rotation (deg),Torque (N m)\n0,1,0,5\n"
-              "1,2,3,6\n0,1,0,5\n"),
-      HasSubstr("'Axial Displacement (mm)' (column 1) and 'Rotation (deg)' (column 3) may "
-                "each be the displacement"));
   EXPECT_EQ(Read("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n", Choose("", "Load")).force.index, 2U)
       << "whoever names a column is believed";
 }

@@ -75,12 +75,10 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// compressed by gzip; "-" is standard input, and ./- a file of that name. docs/input.md says what
 /// it may look like.
 ///
-/// *Columns.* As given; else by evidence: the unit, the words of the name (src/io/words.h) and the
-/// numbers, which go to and fro or only grow. A unit counts more than a word, and numbers that go
-/// to and fro most; what no unit and no word decides is taken from the columns that are left, if
-/// they are as many, with a note. Several columns with the same evidence, a displacement or force
-/// without a unit that only grows while the other goes to and fro, a coefficient of friction and a
-/// register with a sign bit are refused.
+/// *Columns.* As given; else by evidence: the words of the name (src/io/words.h), the unit, which
+/// counts more, and whether the numbers go to and fro, which counts most; what none of these
+/// decides is taken from the columns that are left, if they are as many, with a note. Refused are
+/// several columns with the same evidence, and evidence that contradicts the role.
 ///
 /// *Units.* As given; else of the header; else m, N, s, with a note. Stamps and times of day count
 /// from the first row.
