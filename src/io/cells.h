@@ -10,6 +10,13 @@
 namespace mindahl::io {
 
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+constexpr bool IsCapital(char character) { return character >= 'A' && character <= 'Z'; }
+constexpr bool IsSmall(char character) { return character >= 'a' && character <= 'z'; }
+/// True for a letter, and for any part of one that is not of ASCII.
+constexpr bool IsLetter(char character) {
+  return IsCapital(character) || IsSmall(character) ||
+         static_cast<unsigned char>(character) >= 0x80;
+}
 
 /// Takes the first line off a text, without its end.
 std::string_view TakeLine(std::string_view& text);

@@ -54,13 +54,6 @@ bool Lists(std::string_view list, std::string_view word) {
 
 bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
 
-bool IsCapital(char character) { return character >= 'A' && character <= 'Z'; }
-bool IsSmall(char character) { return character >= 'a' && character <= 'z'; }
-bool IsLetter(char character) {
-  return IsCapital(character) || IsSmall(character) ||
-         static_cast<unsigned char>(character) >= 0x80;
-}
-
 /// Returns the words of a name between blanks, " in words ": runs of letters, cut where a small one
 /// is followed by a capital.
 std::string WordsIn(std::string_view name) {

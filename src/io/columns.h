@@ -67,9 +67,8 @@ struct Column {
 ///   x [um]   F (kN)   F [kN] left   a unit in brackets; at the end also a word that is none known
 ///   Position, mm   x / mm           any unit behind a comma or a slash
 ///   disp_mm   pos_mm_filtered       among the words a unit of what the name is
-/// A factor, a range in another unit than the SI one and a word for a ratio make a unit that is
-/// none: "mm x1000", "5 kN", "normalized".
-/// A unit in the name and another below it make one that is none.
+/// A factor, a range in another unit than the SI one, and another unit below the name make one that
+/// is none: "mm x1000", "5 kN", "mm or um".
 /// @param below  the cell of the units row
 Column ReadName(std::string_view header, std::string_view below = {});
 

@@ -341,7 +341,8 @@ Layout FindLayout(std::string_view text, const std::string& file) {
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
     for (const char decimal_mark : {'.', ','}) {
-      if (decimal_mark == delimiter) continue;
+      const bool occurs = delimiter == kBlanks || text.find(delimiter) != text.npos;
+      if (!occurs || decimal_mark == delimiter) continue;
       Reading reading(sampled, file, delimiter, decimal_mark);
       if (!best || reading.rank() > best->rank()) best = std::move(reading);
     }
@@ -379,14 +380,17 @@ void TableReader::Read(std::string_view text) {
   while (!text.empty()) {
     ++line_;
     const std::string_view row = TakeLine(text);
-    const std::size_t first = row.find_first_not_of(' ');
-    const bool is_number = first != row.npos && (IsDigit(row[first]) || row[first] == '-');
-    if (!is_number && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos ||
-                       BelongsToHeader(row))) {
+    const std::size_t first = row.starts_with(' ') ? row.find_first_not_of(' ') : 0;
+    const char front = first < row.size() ? row[first] : ' ';
+    const bool is_number = IsDigit(front) || front == '-';
+    const bool may_be_none = !is_number && !IsLetter(front);
+    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
       continue;
     }
+    if (!is_number && BelongsToHeader(row)) continue;
     EndText();
     ReadRow(row);
+    front_ = front;
   }
 }
 
@@ -420,7 +424,10 @@ void TableReader::ReadRow(std::string_view row) {
                         table_.file, line_);
   }
   if (!fault.empty()) Break(fault, 0);
-  if (count == columns) return;
+  if (std::find(is_wanted_.begin() + static_cast<std::ptrdiff_t>(count), is_wanted_.end(), true) ==
+      is_wanted_.end()) {
+    return;
+  }
   Break(At(count, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
                               count == 1 ? "" : "s", columns)),
         count);
@@ -451,17 +458,20 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
 
 /// True for a row of text that repeats the header, or may be above a header that is repeated.
 bool TableReader::BelongsToHeader(std::string_view row) {
-  CellCursor cells(row, layout_.delimiter);
-  for (std::size_t k = 0; k < text_column_ && cells.has_next(); ++k) cells.Take();
-  double number = 0.0;
-  if (text_column_ == is_wanted_.size() || cells.TakeNumber(number)) return false;
-  const std::string_view text = Trimmed(row);
-  if ((!layout_.names_row.empty() && text == Trimmed(layout_.names_row)) ||
-      (repeats_header_ && text == Trimmed(layout_.units_row))) {
+  if ((!layout_.names_row.empty() && row == layout_.names_row) ||
+      (repeats_header_ && row == layout_.units_row)) {
     repeats_header_ = true;
     text_fault_.clear();
     return true;
   }
+  // Rows with a label begin alike.
+  if (text_column_ == is_wanted_.size() || (IsLetter(row.front()) && row.front() == front_)) {
+    return false;
+  }
+  CellCursor cells(row, layout_.delimiter);
+  for (std::size_t k = 0; k < text_column_ && cells.has_next(); ++k) cells.Take();
+  double number = 0.0;
+  if (cells.TakeNumber(number)) return false;
   const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;

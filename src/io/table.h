@@ -98,6 +98,7 @@ class TableReader {
   std::vector<bool> is_wanted_;  // of each column
   std::size_t text_column_;      // that has a text in a row of text
   std::size_t line_;
+  char front_ = '\0';  // of the last row
   // Of the text since the last row of numbers: the fault and line of what is no header.
   bool repeats_header_ = false;
   std::string text_fault_;

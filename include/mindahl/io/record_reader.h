@@ -90,8 +90,8 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// every row, not the same in all, called by their name without its unit, or else by number.
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
-///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
-///   number, a time before that of the row above; a file beyond the limits
+///   ambiguous column, an unknown unit, a cell that is not a finite number, a time before that of
+///   the row above; a file beyond the limits
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
 
 /// Reads columns in memory as ReadRecord() reads a file with their names, with units, in its first
@@ -108,9 +108,8 @@ struct Samples : loop::Record {
 
 /// A record read piece by piece, in memory that does not depend on its length.
 ///
-/// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
-/// the header and the rows in the first mebibyte; every row is then read
-/// by the same rules. Covariates are not read.
+/// The layout is found, and columns are judged, by the first mebibyte; every row is then read by
+/// the rules of ReadRecord(). Covariates are not read.
 class RecordStream {
  public:
   /// @throws InputError as ReadRecord() does of a file that ends with these rows
