@@ -310,16 +310,19 @@ void Observe(std::vector<Column>& columns) {
   const bool has_force = std::ranges::any_of(
       columns, [](const Column& of) { return of.dimension == Dimension::kForce; });
   bool has_friction = false;
+  bool has_ratio = false;
   for (Column& of : columns) {
     const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
                         of.greatest < kGreatestCoefficient;
     if (may_be && (of.word == "friction" || of.word == "f")) of.is_ratio = true;
-    has_friction = has_friction || of.is_ratio || (of.names(Role::kForce) && of.rank == 0);
+    has_ratio = has_ratio || of.is_ratio;
+    has_friction = has_friction || (of.names(Role::kForce) && of.rank == 0);
   }
   for (Column& of : columns) {
     const bool is_load =
         of.names(Role::kForce) && of.rank == 2 && !of.is_angular && of.other_words == 0;
-    if (has_friction && is_load) of.role = Role::kNormalLoad;
+    const bool keeps_sign = of.least > 0 || of.greatest < 0;
+    if (is_load && (has_friction || (has_ratio && keeps_sign))) of.role = Role::kNormalLoad;
   }
 }
 

@@ -85,7 +85,8 @@ std::optional<Dimension> DimensionOf(std::string_view symbol);
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 
 /// Describes how the values of columns behave. A friction without a unit beside a load is a ratio,
-/// and what is called a load beside a friction force or a coefficient is the normal one.
+/// and what is called a load beside a friction force, or a load of one sign beside a ratio, is the
+/// normal one.
 void Observe(std::vector<Column>& columns);
 
 }  // namespace mindahl::io

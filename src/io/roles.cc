@@ -141,17 +141,17 @@ class RoleAssigner {
     bool moves = false;
   };
 
-  /// @param turns  whether it is to be an angle or a torque
+  /// @param turns  whether it is to be an angle or a torque; empty where that does not matter
   /// @param other  the column of the other role
-  Choice Best(Role role, bool turns, std::optional<std::size_t> other = {}) {
+  Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
     Choice best;
     for (std::size_t column = 0; column < table_.columns.size(); ++column) {
       const Column& of = table_.columns[column];
       const bool is_given = !IsMissing(role) && column == Of(role).first_column();
       const int evidence = EvidenceFor(of, role);
       const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0;
-      const bool is_angular = of.IsAngular(Of(role).given_unit).value_or(turns);
-      if (!(is_given || is_free) || is_angular != turns) continue;
+      const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
+      if (!(is_given || is_free) || (turns && is_angular.value_or(*turns) != *turns)) continue;
       // A column of text is taken where there is no other, and refused by its first row.
       const int score = of.values.empty() ? 1 : evidence + (of.goes_to_and_fro ? kMoving : 0);
       if (score == best.score) best.rival = column;
@@ -160,15 +160,18 @@ class RoleAssigner {
     return best;
   }
 
-  /// Takes the displacement and the force of the most evidence of those that go together.
+  /// Takes the displacement and the force of the most evidence: before all others two that go
+  /// together, then two that do not, of which one has no unit of its role.
   void FindPair() {
     constexpr int kBoth = 1'000'000;
+    constexpr int kMixed = kBoth / 2;
     std::array<Choice, 2> best;
     int most = -1;
-    for (const bool turns : {false, true}) {
+    for (const auto turns : {std::optional(false), std::optional(true), std::optional<bool>()}) {
       const Choice x = Best(kPair[0], turns);
       const Choice force = Best(kPair[1], turns, x.column);
-      const int score = x.score + force.score + (x.column && force.column ? kBoth : 0);
+      const int score =
+          x.score + force.score + (x.column && force.column ? kBoth : 0) - (turns ? 0 : kMixed);
       if (score > most) best = {x, force};
       most = std::max(score, most);
     }

@@ -265,7 +265,7 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
       {"speed.csv", "speed,F [N]\n0,0\n1,1\n0,-1\n",
        "speed.csv: no column for the displacement: the columns are 'speed' (1), 'F [N]' (2)"},
       {"unfit.csv", "angle [deg],F [N]\n0,0\n1,1\n0,-1\n",
-       "unfit.csv: no column for the displacement: the columns are 'angle [deg]' (1), 'F [N]' (2)"},
+       "unfit.csv:1:2: the unit 'N' of 'F [N]' (column 2) is not known for the force"},
       {"nan.csv", "x [m],F [N]\n0,0\n1,nan\n2,1\n", "nan.csv:3:2: 'nan' is not a number"},
       {"text.csv", "x [m],F [N]\n0,0\n1,one\n2,1\n", "text.csv:3:2"},
       {"huge.csv", "x [m],F [N]\n0,0\n1e300,1\n-1e300,-1\n",

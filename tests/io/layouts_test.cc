@@ -250,6 +250,7 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
                 HasSubstr("of a ratio"))
         << names;
   }
+  EXPECT_EQ(Read("x [mm],mu,Load [N]\n0,0.1,9\n1,0.3,-9\n0,0.1,9\n").force.index, 3U);
   EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("of a ratio"));
 }
 

@@ -151,11 +151,12 @@ t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'x10' of 'F (N x10)' (column
 x [m],p [bar]¶1,2¶ | - | p | :1:2: the unit 'bar' of 'p [bar]' (column 2) is not known for the
    force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
    --force '2 [N]', or with a factor '#2*0.001 [N]'
-¶t,x [m],Torque [Nm]¶1,2,3¶ | - | - | : no column for the displacement: the columns are 't' (1),
-   'x [m]' (2), 'Torque [Nm]' (3): choose it with --displacement, by name or number
-¶t,x [m],Torque [Nm]¶1,2,3¶ | 2 | 3 | :2:2: the unit 'm' of 'x [m]' (column 2) is not known for the
+¶t,x [m],Torque [Nm]¶1,2,3¶ | - | - | :2:2: the unit 'm' of 'x [m]' (column 2) is not known for the
    displacement: must be one of rad, mrad, deg, rev, as in --displacement '2 [rad]', or with a factor
    '#2*0.001 [rad]'
+angle,F¶1,2¶ | - | [kN] | : the unit 'kN' of 'F' (column 2) is not known for the force: must be one of
+   N m, mN m, uN m, kN m, N mm, lbf in, lbf ft, as in --force '2 [N m]', or with a factor
+   '#2*0.001 [N m]'
 left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
    and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
    number: the columns are 'left' (1), 'F' (2)
