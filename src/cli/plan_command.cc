@@ -27,7 +27,7 @@ struct PlanOptions {
   std::optional<double> force_noise;
   std::optional<double> displacement_noise;
   std::vector<double> amplitudes;
-  Protocol protocol{.initial_state = models::InitialState::kSteady};
+  Protocol protocol;
   std::vector<std::string> want;
   std::string json;
   std::string plot;
@@ -119,14 +119,22 @@ Plan MakePlan(const PlanOptions& options) {
     plan.loops.push_back(identification::ExpectFit(plan.expected, protocol));
   }
   if (plan.wanted.empty()) return plan;
-  Protocol fewest;
-  const std::optional<ExpectedFit> least = identification::LeastAmplitude(
-      plan.expected, protocol, plan.wanted, kShares.front() * plan.slip, kShares.back() * plan.slip,
-      &fewest);
-  const bool any = fewest.amplitude > 0;
-  plan.reached = {{"least_amplitude", least ? Json(least->protocol.amplitude) : Json()},
-                  {"fewest_cycles", any ? Json(fewest.cycles) : Json()},
-                  {"amplitude_of_fewest_cycles", any ? Json(fewest.amplitude) : Json()}};
+  std::optional<double> least;
+  double fewest = std::numeric_limits<double>::infinity();
+  double at_fewest = 0.0;
+  for (const ExpectedFit& fit : plan.loops) {
+    const double amplitude = fit.protocol.amplitude;
+    const double factor = identification::CyclesFactor(fit, plan.wanted);
+    if (factor <= 1) least = std::min(least.value_or(amplitude), amplitude);
+    if (factor >= fewest) continue;
+    fewest = factor;
+    at_fewest = amplitude;
+  }
+  const bool any = at_fewest > 0;
+  const double cycles = std::max(1.0, std::ceil(fewest * protocol.cycles));
+  plan.reached = {{"least_amplitude", NumberOrNull(least)},
+                  {"fewest_cycles", any ? Json(cycles) : Json()},
+                  {"amplitude_of_fewest_cycles", any ? Json(at_fewest) : Json()}};
   return plan;
 }
 
@@ -232,7 +240,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   CLI::App& command = AddCommand(
       app, "plan",
       "Plans a measurement: the standard errors that a loop of each\n"
-      "amplitude would give, and the smallest amplitude that reaches a wanted\n"
+      "amplitude would give, and the smallest of these that reaches a wanted\n"
       "precision. Exit status 3 when none does.",
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json"});

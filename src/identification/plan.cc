@@ -44,7 +44,7 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
   const std::vector<std::size_t> reversals = loop::FindReversals(record.displacement, 0.0);
   const models::FrictionModel& masing = *models::FindFrictionModel("mindlin-dahl");
   const models::LoadingPath path = models::MakeLoadingPath(
-      record.displacement, reversals, masing.memory, {.state = protocol.initial_state});
+      record.displacement, reversals, masing.memory, {.state = models::InitialState::kSteady});
   record.force.resize(record.size());
   models::EvaluateForce(masing, expected.law, path, record.displacement, record.force,
                         expected.rig);
@@ -52,16 +52,15 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
 }
 
 /// Returns the options of a fit of the loop, from the values that are expected.
-FitOptions OptionsOf(const Expectation& expected, const Protocol& protocol) {
+FitOptions OptionsOf(const Expectation& expected) {
   FitOptions options;
-  options.initial_states = {protocol.initial_state};
+  options.initial_states = {models::InitialState::kSteady};
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
   options.start = {{"sigma", expected.law.tangential_stiffness},
                    {"alpha", expected.law.shape_exponent},
-                   {"slip_force", expected.law.slip_force},
-                   {"displacement_offset", 0.0}};
+                   {"slip_force", expected.law.slip_force}};
   if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
   return options;
 }
@@ -71,7 +70,7 @@ FitOptions OptionsOf(const Expectation& expected, const Protocol& protocol) {
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   RequirePlan(expected, protocol);
   const loop::Record record = LoopOf(expected, protocol);
-  const FitOptions options = OptionsOf(expected, protocol);
+  const FitOptions options = OptionsOf(expected);
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
@@ -126,50 +125,6 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
     factor = std::max(factor, std::pow(*estimate->standard_error / allowed, 2));
   }
   return factor;
-}
-
-std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
-                                          const WantedPrecision& wanted, double least, double most,
-                                          Protocol* fewest) {
-  RequirePositive("least amplitude [m]", least);
-  if (!(most > least)) ThrowInvalid("greatest amplitude [m]", most, "must exceed the least");
-  constexpr int kLooks = 48;  // on a logarithmic scale
-  constexpr double kCloseEnough = 1.01;
-  const auto expect = [&](double amplitude) {
-    Protocol at = protocol;
-    at.amplitude = amplitude;
-    return ExpectFit(expected, at);
-  };
-  double best = std::numeric_limits<double>::infinity();
-  double below = 0.0;
-  for (int i = 0; i <= kLooks; ++i) {
-    const double amplitude = least * std::pow(most / least, static_cast<double>(i) / kLooks);
-    ExpectedFit fit = expect(amplitude);
-    const double factor = CyclesFactor(fit, wanted);
-    if (factor < best && fewest != nullptr) {
-      *fewest = fit.protocol;
-      fewest->cycles = std::max(1.0, std::ceil(factor * protocol.cycles));
-    }
-    best = std::min(best, factor);
-    if (factor > 1) {
-      below = amplitude;
-      continue;
-    }
-    // From the last amplitude that does not reach it.
-    double above = amplitude;
-    while (below > 0 && above > kCloseEnough * below) {
-      const double middle = std::sqrt(below * above);
-      ExpectedFit trial = expect(middle);
-      if (CyclesFactor(trial, wanted) <= 1) {
-        above = middle;
-        fit = std::move(trial);
-      } else {
-        below = middle;
-      }
-    }
-    return fit;
-  }
-  return std::nullopt;
 }
 
 }  // namespace mindahl::identification

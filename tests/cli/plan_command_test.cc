@@ -72,11 +72,8 @@ TEST_F(PlanCommand, ExpectsTheErrorsOfItsProtocol) {
   expected.rig.stiffness = 8e7;
   expected.force_noise = 0.2;
   expected.displacement_noise = 2e-9;
-  const identification::ExpectedFit fit =
-      identification::ExpectFit(expected, {.amplitude = 2e-6,
-                                           .cycles = 2,
-                                           .samples_per_cycle = 60,
-                                           .initial_state = models::InitialState::kSteady});
+  const identification::ExpectedFit fit = identification::ExpectFit(
+      expected, {.amplitude = 2e-6, .cycles = 2, .samples_per_cycle = 60});
   const json& loop = plan["loops"].at(0);
   EXPECT_EQ(loop["amplitude"], 2e-6);
   EXPECT_EQ(loop["peak_force"], fit.peak_force);

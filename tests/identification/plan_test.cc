@@ -13,9 +13,7 @@ constexpr double kForceNoise = 0.4;
 
 Expectation Quiet() { return {.law = kLaw, .force_noise = kForceNoise}; }
 
-Protocol ProtocolOf(double lambda, InitialState state = InitialState::kVirgin) {
-  return {.amplitude = lambda * kSlip, .initial_state = state};
-}
+Protocol ProtocolOf(double lambda) { return {.amplitude = lambda * kSlip}; }
 
 double ErrorOf(const ExpectedFit& fit, std::string_view name) {
   const ParameterEstimate* estimate = fit.Find(name);
@@ -31,8 +29,8 @@ Deviations Scatter(const Expectation& expected, const Protocol& protocol, int lo
                                        static_cast<int>(protocol.samples_per_cycle));
   const Record clean =
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), expected.law, displacement,
-                                       {.state = protocol.initial_state}, expected.rig));
-  FitOptions options{.initial_states = {protocol.initial_state},
+                                       {.state = InitialState::kSteady}, expected.rig));
+  FitOptions options{.initial_states = {InitialState::kSteady},
                      .preparation = {.displacement_noise = expected.displacement_noise},
                      .force_noise = expected.force_noise};
   if (std::isfinite(expected.rig.stiffness))
@@ -64,19 +62,16 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
   constexpr double kTolerance = 0.17;
   struct Case {
     double lambda;
-    InitialState state;
     double displacement_noise;
     double rig_stiffness;
   };
   constexpr double kRigid = std::numeric_limits<double>::infinity();
-  for (const Case& c : {Case{0.8, InitialState::kVirgin, 0.0, kRigid},
-                        {1.2, InitialState::kSteady, 0.0, kRigid},
-                        {1.2, InitialState::kVirgin, 5e-9, kRigid},
-                        {3.0, InitialState::kVirgin, 0.0, 8e7}}) {
+  for (const Case& c :
+       {Case{0.8, 0.0, kRigid}, {1.2, 0.0, kRigid}, {1.2, 5e-9, kRigid}, {3.0, 0.0, 8e7}}) {
     Expectation expected = Quiet();
     expected.displacement_noise = c.displacement_noise;
     expected.rig.stiffness = c.rig_stiffness;
-    const Protocol protocol = ProtocolOf(c.lambda, c.state);
+    const Protocol protocol = ProtocolOf(c.lambda);
     const ExpectedFit fit = ExpectFit(expected, protocol);
     const Deviations scatter = Scatter(expected, protocol, kLoops);
     EXPECT_NEAR(ErrorOf(fit, "sigma") / scatter[0], 1.0, kTolerance) << c.lambda;
@@ -87,11 +82,11 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
 
 TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
   constexpr double kRounding = 1e-9;
-  const ExpectedFit once = ExpectFit(Quiet(), ProtocolOf(1.2, InitialState::kSteady));
+  const ExpectedFit once = ExpectFit(Quiet(), ProtocolOf(1.2));
   Expectation noisy = Quiet();
   noisy.force_noise *= 3;
-  const ExpectedFit thrice = ExpectFit(noisy, ProtocolOf(1.2, InitialState::kSteady));
-  Protocol longer = ProtocolOf(1.2, InitialState::kSteady);
+  const ExpectedFit thrice = ExpectFit(noisy, ProtocolOf(1.2));
+  Protocol longer = ProtocolOf(1.2);
   longer.cycles *= 16;
   const ExpectedFit sixteen = ExpectFit(Quiet(), longer);
   // The last sample of the last cycle is one more in 601.
@@ -100,19 +95,6 @@ TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
     EXPECT_NEAR(ErrorOf(thrice, name) / ErrorOf(once, name), 3.0, 3 * kRounding) << name;
     EXPECT_NEAR(ErrorOf(once, name) / ErrorOf(sixteen, name), 4.0, 4 * kOneSampleMore) << name;
   }
-}
-
-TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
-  const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
-                                  {"slip_force", {.value = 0.01, .is_relative = true}}};
-  const auto reached = LeastAmplitude(Quiet(), ProtocolOf(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
-  ASSERT_TRUE(reached);
-  EXPECT_LE(CyclesFactor(*reached, wanted), 1.0);
-  EXPECT_LE(ErrorOf(*reached, "alpha"), 0.01);
-  EXPECT_LE(ErrorOf(*reached, "slip_force"), 0.01 * kLaw.slip_force);
-  Protocol smaller = reached->protocol;
-  smaller.amplitude /= 1.02;  // the amplitude is found to 1 %
-  EXPECT_GT(CyclesFactor(ExpectFit(Quiet(), smaller), wanted), 1.0);
 }
 
 TEST(Plan, RefusesWhatMeansNothing) {

@@ -10,7 +10,6 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 
 /// Predicts the errors that a fit of a loop would have, before it is measured.
@@ -24,13 +23,11 @@ struct Expectation {
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
 };
 
-/// A loop that may be measured: a sine of one amplitude.
+/// A loop that may be measured: a sine of one amplitude, of a contact that was cycled before.
 struct Protocol {
   double amplitude = 0.0;               ///< X [m], finite, > 0
   double cycles = 3.0;                  ///< finite, >= 1
   std::size_t samples_per_cycle = 200;  ///< >= 4
-  /// Virgin: the record has the first loading of the contact. Steady: it begins later.
-  models::InitialState initial_state = models::InitialState::kVirgin;
 };
 
 /// Holds the expected result of a fit of the planned loop.
@@ -70,12 +67,5 @@ using WantedPrecision = std::map<std::string, Precision>;
 /// determine a parameter.
 /// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
 double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
-
-/// Returns the least amplitude that reaches what is wanted with the protocol's cycles, to 1 %;
-/// empty where none between `least` and `most` does. `fewest`, where given, is set to the protocol
-/// among those looked at that needs the fewest cycles, its number of cycles being those.
-std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
-                                          const WantedPrecision& wanted, double least, double most,
-                                          Protocol* fewest = nullptr);
 
 }  // namespace mindahl::identification
