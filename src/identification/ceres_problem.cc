@@ -44,7 +44,7 @@ CeresProblem::State::State(std::span<const loop::RecordView> records, FitOptions
   prepared = loop::Prepare(records, options.preparation);
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
-  AddColumns(options, prepared, /*with_others=*/false, data);
+  AddColumns(options, prepared, data);
   std::vector<models::InitialState> states;
   states.reserve(data.records.size());
   for (std::size_t r = 0; r < data.records.size(); ++r) {

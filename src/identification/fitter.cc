@@ -198,7 +198,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       given.preparation.drawn ? given.preparation.drawn : loop::DrawReadings(prepared);
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
-  AddColumns(given, prepared, /*with_others=*/depth >= Depth::kIntervals, data);
+  AddColumns(given, prepared, data);
   std::optional<FitResult> without_priors;
   if (!given.priors.empty()) {
     without_priors = FitWithoutPriors(records, depth, given);

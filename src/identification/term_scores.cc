@@ -52,7 +52,7 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
   prepared_ = loop::Prepare(records, with_all.preparation);
   LeaveOutBeyondLags(with_all, prepared_);
   data_ = Scale(prepared_, options);
-  AddColumns(with_all, prepared_, /*with_others=*/false, data_);
+  AddColumns(with_all, prepared_, data_);
 }
 
 Problem TermScores::ProblemOf(const FitOptions& options) const {

@@ -43,7 +43,7 @@ class Stages {
                                                        const identification::FitOptions& options) {
     identification::LeaveOutBeyondLags(options, prepared);
     identification::ScaledRecords data = identification::Scale(prepared, options);
-    identification::AddColumns(options, prepared, /*with_others=*/true, data);
+    identification::AddColumns(options, prepared, data);
     return data;
   }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -58,7 +57,7 @@ struct Cause {
   std::string_view code;    ///< stable, for scripts; docs/contract.md lists them
   double delta_aicc = 0.0;  ///< change of AICc with the term: negative where it helps
   double explains = 0.0;    ///< fraction of the residuals' variance [–]
-  std::string term;         ///< name in `--terms` that fits it, or a column's; empty: none does
+  std::string_view term;    ///< name in `--terms` that fits it; empty: none does
 };
 
 /// Holds whether, and why not, the model describes the records: docs/identification.md.

@@ -90,9 +90,6 @@ struct Thresholds {
   /// [of its norm] A column whose part orthogonal to the law's is less is one of theirs. What is
   /// left of it is the law's own curvature, and would explain any misfit.
   double own_part = 0.02;
-  /// [of its deviation] A covariate that is a line of time, displacement, force and load but for
-  /// less is one of these. A force as it was commanded differs from the measured one by as much.
-  double own_covariate = 0.2;
   /// [correlation] A covariate that correlates by more with the fitted force follows the contact.
   /// Its coefficient is then confounded with σ and Tc.
   double follows_contact = 0.3;

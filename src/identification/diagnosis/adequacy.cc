@@ -136,12 +136,10 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   adequacy.p_value = test.p_value;
   adequacy.tried = test.fits.size();
   for (const OmittedTerm& fit : causes) {
-    adequacy.causes.push_back(Cause{
-        .code = fit.departure->code,
-        .delta_aicc = fit.delta_aicc,
-        .explains = fit.explains,
-        .term = std::string(fit.covariate ? std::string_view(data.covariates[*fit.covariate].name)
-                                          : fit.departure->group)});
+    adequacy.causes.push_back(Cause{.code = fit.departure->code,
+                                    .delta_aicc = fit.delta_aicc,
+                                    .explains = fit.explains,
+                                    .term = fit.departure->group});
   }
   const double noise = NoiseVariance(result);
   const double square = result.rms * result.rms;

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -36,11 +35,10 @@ struct Departure {
   }
 };
 
-/// An omitted term of a record: one of Departures(), or one covariate.
+/// An omitted term of a record: one of Departures().
 struct OmittedTerm {
   const Departure* departure = nullptr;
-  std::optional<std::size_t> covariate = {};  // its place in ScaledRecords
-  std::vector<Eigen::Index> places = {};      // of its columns
+  std::vector<Eigen::Index> places = {};  // of its columns
   // The fit with it, by one linear step; only the p-value of one that noise may well have made:
   double p_value = 1.0;           // that noise alone makes it
   double delta_aicc = 0.0;        // against the fit without

@@ -3,34 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 
 #include "mindahl/models/friction_model.h"
 
 namespace mindahl::identification {
 namespace {
 
-/// Returns the times of all samples, by their number where time does not go on.
-std::vector<std::vector<double>> TimesOf(const ScaledRecords& data) {
-  const bool is_timed = std::ranges::all_of(data.records, [](const ScaledRecord& record) {
-    return !record.velocity.empty() &&
-           std::ranges::adjacent_find(record.time, std::greater_equal()) == record.time.end();
-  });
-  const double first = std::max(static_cast<double>(data.records[0].size()) - 1, 1.0) / 2;
-  const double unit = is_timed ? data.records[0].units.half_duration : first;
-  std::vector<std::vector<double>> times;
-  for (const ScaledRecord& record : data.records) {
-    std::vector<double>& time = times.emplace_back(record.size());
-    const double middle = (static_cast<double>(record.size()) - 1) / 2;
-    for (std::size_t i = 0; i < time.size(); ++i) {
-      time[i] = is_timed ? record.time[i] * record.units.half_duration / unit
-                         : (static_cast<double>(i) - middle) / unit;
-    }
-  }
-  return times;
-}
-
-/// Derivative by time, by differences to both sides.
+/// Derivative by time, by differences to both sides; 0 where time does not go on.
 /// @param turns  none looks beyond; one is the stroke's that ends there
 std::vector<double> Derive(std::span<const double> values, std::span<const double> time,
                            std::span<const std::size_t> turns = {}) {
@@ -51,11 +30,11 @@ std::vector<double> Derive(std::span<const double> values, std::span<const doubl
 std::vector<double> DeriveTwice(std::span<const double> values, std::span<const double> time) {
   constexpr std::size_t kStep = 2;
   std::vector<double> second(values.size());
-  if (values.size() < 2 * kStep + 1) return second;
-  for (std::size_t k = 0; k < values.size(); ++k) {
+  for (std::size_t k = 0; k < values.size() && values.size() > 2 * kStep; ++k) {
     const std::size_t i = std::clamp(k, kStep, values.size() - 1 - kStep);
     const double back = time[i] - time[i - kStep];
     const double on = time[i + kStep] - time[i];
+    if (!(back > 0 && on > 0)) continue;
     second[k] = 2 *
                 ((values[i + kStep] - values[i]) / on - (values[i] - values[i - kStep]) / back) /
                 (back + on);
@@ -86,7 +65,7 @@ void SetMissedWay(std::span<Place> places) {
     if (next == places.size()) break;
     const double step = places[next].displacement - places[first].displacement;
     const double duration = places[next].time - places[first].time;
-    for (std::size_t i = first + 1; i < next; ++i) {
+    for (std::size_t i = first + 1; i < next && duration > 0; ++i) {
       places[i].missed = step * (places[i].time - places[first].time) / duration;
     }
     first = next;
@@ -107,78 +86,57 @@ void SetProgress(const ScaledRecord& record, std::span<const double> response,
   }
 }
 
-/// Places under an imposed force, which a column of displacements adds to as it goes.
-std::vector<Place> PlacesUnderForce(const Problem& problem, std::span<const double> theta,
-                                    Response& response,
-                                    std::span<const std::vector<double>> times) {
-  const ScaledRecords& data = *problem.data;
-  std::vector<double> displacement(problem.size());
-  response.Bind(problem);
-  response.Evaluate(theta, displacement);
-  const double scale = std::exp(LogScaleAt(problem, theta));
-  for (double& value : displacement) value *= scale;
-  std::vector<Place> places(problem.size());
-  std::size_t begin = 0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
-    const std::span<const double> own = std::span(displacement).subspan(begin, record.size());
-    const std::span<Place> of = std::span(places).subspan(begin, record.size());
-    const std::vector<double> rate = Derive(own, times[r], record.reversals);
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      of[i] = {
-          .displacement = own[i], .time = times[r][i], .rate = rate[i], .force = record.force[i]};
-    }
-    SetProgress(record, own, of);
-    begin += record.size();
-  }
-  return places;
-}
-
 }  // namespace
 
 std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
                             double held_readings, Response& response) {
   const ScaledRecords& data = *problem.data;
-  const std::vector<std::vector<double>> times = TimesOf(data);
-  if (data.is_forced()) return PlacesUnderForce(problem, theta, response, times);
+  const bool is_forced = data.is_forced();
   const bool tells_asymmetry = AnyIsVirgin(problem.states) &&
                                problem.model->memory == models::Memory::kReturnPoint &&
-                               !data.load_varies;
-  std::vector<double> force(problem.size());
+                               !data.load_varies && !is_forced;
+  std::vector<double> contact(problem.size());  // its response
   std::vector<double> complete(problem.size());
-  std::vector<double> by_asymmetry(tells_asymmetry ? problem.size() : 0);
+  std::vector<double> by_asymmetry(problem.size());
   ResponseColumns wanted;
-  wanted[TermId::kAsymmetry] = by_asymmetry;
+  if (tells_asymmetry) wanted[TermId::kAsymmetry] = by_asymmetry;
   response.Bind(problem);
-  response.Differentiate(theta, force, wanted);
-  Predict(problem, theta, response, complete);
+  response.Differentiate(theta, contact, wanted);
+  if (is_forced) {
+    const double scale = std::exp(LogScaleAt(problem, theta));
+    for (double& value : contact) value *= scale;
+    complete = contact;
+  } else {
+    Predict(problem, theta, response, complete);
+  }
   double peak = 0.0;
-  for (const double value : force) peak = std::max(peak, std::abs(value));
+  for (const double value : contact) peak = std::max(peak, std::abs(value));
   const bool is_held = IsDisplacementHeld(data, held_readings);
   std::vector<Place> places(problem.size());
   std::size_t begin = 0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
+  for (const ScaledRecord& record : data.records) {
     const std::span<const double> whole = std::span(complete).subspan(begin, record.size());
-    const std::span<const double> of_contact = std::span(force).subspan(begin, record.size());
+    const std::span<const double> own = std::span(contact).subspan(begin, record.size());
     const std::span<Place> of = std::span(places).subspan(begin, record.size());
-    const std::vector<double> velocity = Derive(record.displacement, times[r]);
-    const std::vector<double> acceleration = DeriveTwice(record.displacement, times[r]);
-    const std::vector<double> rate = Derive(whole, times[r], record.reversals);
-    const std::vector<double> curvature = DeriveTwice(whole, times[r]);
+    std::vector<double> time = record.time;
+    for (double& value : time) value *= record.units.half_duration;
+    const std::vector<double> velocity = Derive(record.displacement, time);
+    const std::vector<double> acceleration = DeriveTwice(record.displacement, time);
+    const std::vector<double> rate = Derive(whole, time, record.reversals);
+    const std::vector<double> curvature = DeriveTwice(whole, time);
     for (std::size_t i = 0; i < record.size(); ++i) {
-      of[i] = {.displacement = record.displacement[i],
-               .time = times[r][i],
+      of[i] = {.displacement = is_forced ? own[i] : record.displacement[i],
+               .time = time[i],
                .velocity = velocity[i],
                .acceleration = acceleration[i],
                .rate = rate[i],
                .curvature = curvature[i],
-               .force = of_contact[i],
+               .force = is_forced ? record.force[i] : own[i],
                .peak = peak,
                .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
-               .asymmetry = tells_asymmetry ? by_asymmetry[begin + i] : 0.0};
+               .asymmetry = by_asymmetry[begin + i]};
     }
-    SetProgress(record, of_contact, of);
+    SetProgress(record, own, of);
     if (is_held) SetMissedWay(of);
     begin += record.size();
   }

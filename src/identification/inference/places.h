@@ -10,7 +10,7 @@ namespace mindahl::identification {
 /// A sample, in units of the data: what columns of omitted terms are made of.
 struct Place {
   double displacement = 0.0;  // of a contact under an imposed force from where it is unloaded
-  double time = 0.0;          // from the record's middle, in a unit that all records share
+  double time = 0.0;          // [s], or samples, from the record's middle
   double velocity = 0.0;
   double acceleration = 0.0;
   double rate = 0.0;       // of the whole response

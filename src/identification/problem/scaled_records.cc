@@ -353,32 +353,20 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
 
 }  // namespace
 
-void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
                 ScaledRecords& data) {
   AddColumnsOfTerms(options, data);
-  std::vector<std::string> names = options.covariates;
-  for (const loop::Covariate& other : records.records.front().record.covariates) {
-    const bool is_new = std::ranges::find(names, other.name) == names.end();
-    if (with_others && is_new) names.push_back(other.name);
-  }
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const bool is_fitted = k < options.covariates.size();
+  for (const std::string& name : options.covariates) {
     std::vector<const loop::Covariate*> columns;
     double scale = 0.0;
     for (const loop::PreparedRecord& record : records.records) {
-      const loop::Covariate* const column = FindCovariate(record.record, names[k]);
-      if (column != nullptr) {
-        scale = std::max(scale, RangeOf(column->values).half);
-      } else if (is_fitted) {
-        throw InvalidArgument(
-            fmt::format("record {} has no covariate '{}'", columns.size() + 1, names[k]));
+      columns.push_back(FindCovariate(record.record, name));
+      if (columns.back() == nullptr) {
+        throw InvalidArgument(fmt::format("record {} has no covariate '{}'", columns.size(), name));
       }
-      columns.push_back(column);
+      scale = std::max(scale, RangeOf(columns.back()->values).half);
     }
-    if (is_fitted) RequireScale(fmt::format("half range of the covariate '{}'", names[k]), scale);
-    const bool is_complete =
-        std::ranges::none_of(columns, [](auto* column) { return column == nullptr; });
-    if (!is_complete || !(scale >= kSmallestScale && scale <= kLargestScale)) continue;
+    RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
     const std::size_t last = data.covariates.size();
     data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
     for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -386,21 +374,20 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
       std::vector<double>& column = data.records[r].covariates.emplace_back();
       for (const double value : columns[r]->values) column.push_back((value - reference) / scale);
     }
-    if (!is_fitted) continue;
     const bool is_force = std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
       return AreOneChannel(record.covariates[last], record.force);
     });
-    if (is_force && !options.fixed.contains(NameOfCovariate(names[k]))) {
+    if (is_force && !options.fixed.contains(NameOfCovariate(name))) {
       throw InvalidArgument(fmt::format(
           "the covariate '{}' is the channel of the force, a linear function of it: leave it out",
-          names[k]));
+          name));
     }
     for (std::size_t other = 0; other < last; ++other) {
       if (!AreOneChannel(data, other, last)) continue;
       throw InvalidArgument(fmt::format(
           "the covariates '{}' and '{}' are one channel, the one a linear function of the other: "
           "name one of them",
-          names[other], names[k]));
+          options.covariates[other], name));
     }
   }
 }

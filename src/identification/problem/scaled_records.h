@@ -74,7 +74,7 @@ struct CovariateColumn {
 /// All records in common units: what makes a fit independent of the units of its files.
 struct ScaledRecords {
   std::vector<ScaledRecord> records;
-  std::vector<CovariateColumn> covariates;  // first those that are fitted
+  std::vector<CovariateColumn> covariates;  // that are fitted
   double length = 1.0;                      // [m]: largest half range of displacement
   double force = 1.0;                       // [N]: largest half range of force
   loop::Channel excitation = loop::Channel::kDisplacement;
@@ -105,11 +105,9 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 /// Adds the columns that the options' terms need beyond those of every fit (accelerations,
 /// speeds), and covariates: each less the middle of its range in the
 /// record, so that the offset of the force keeps its meaning; literally where there are no offsets.
-/// @param with_others  also the covariates that no term is fitted to, where they change and all
-///   records have them
 /// @throws InvalidArgument where a record has no covariate that is fitted, or it never changes, or
 ///   two of them are one channel
-void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
                 ScaledRecords& data);
 
 /// A stroke: from the record's beginning or a reversal to the next reversal or its end.
