@@ -110,8 +110,9 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
   if (local.null.empty()) return std::nullopt;
   std::vector<std::string> names;
-  for (std::size_t k = 0; k < local.columns.size(); ++k) {
-    if (!local.determined[k]) names.push_back(problem.parameters.NameOf(local.columns[k]));
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (!local.determined[k]) names.push_back(problem.parameters.NameOf(free[k]));
   }
   // With as many directions as names, each parameter is undetermined by itself.
   const bool are_alone = local.null.size() >= names.size();

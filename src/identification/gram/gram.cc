@@ -1,10 +1,9 @@
 #include "identification/gram/gram.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 #include <vector>
-
-#include "identification/dense.h"
 
 namespace mindahl::identification {
 namespace {
@@ -35,14 +34,14 @@ Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
   Eigen::MatrixXd c = omitted;
   law_norms_ = Normalize(j);
   omitted_norms_ = Normalize(c);
-  const Eigen::MatrixXd of_law = TransposedProduct(j, j);
+  const Eigen::MatrixXd of_law = j.transpose() * j;
   inverse_of_law_ = j.cols() > 0
                         ? Eigen::MatrixXd(of_law.completeOrthogonalDecomposition().pseudoInverse())
                         : of_law;
-  const Eigen::MatrixXd mixed = TransposedProduct(j, c);
-  shares_ = Product(inverse_of_law_, mixed);
+  const Eigen::MatrixXd mixed = j.transpose() * c;
+  shares_ = inverse_of_law_ * mixed;
   law_residual_ = j.transpose() * residual;
-  free_ = TransposedProduct(c, c) - TransposedProduct(mixed, shares_);
+  free_ = c.transpose() * c - mixed.transpose() * shares_;
   free_residual_ = c.transpose() * residual - shares_.transpose() * law_residual_;
   sum_of_squares_ = residual.squaredNorm() - law_residual_.dot(inverse_of_law_ * law_residual_);
   for (Eigen::Index k = 0; k < c.cols(); ++k) {
@@ -64,24 +63,25 @@ void Gram::SetNoise(Eigen::MatrixXd products) {
   const Eigen::Index law = law_norms_.size();
   const Eigen::Index omitted = omitted_norms_.size();
   const Eigen::MatrixXd of_law = products.topLeftCorner(law, law);
-  const Eigen::MatrixXd mixed = TransposedProduct(shares_, products.topRightCorner(law, omitted));
+  const Eigen::MatrixXd mixed = shares_.transpose() * products.topRightCorner(law, omitted);
   free_noise_ = products.bottomRightCorner(omitted, omitted) - mixed - mixed.transpose() +
-                Product(TransposedProduct(shares_, of_law), shares_);
-  absorbed_ = Product(inverse_of_law_, of_law).trace();
-  law_noise_ = Product(Product(inverse_of_law_, of_law), inverse_of_law_);
+                shares_.transpose() * of_law * shares_;
+  absorbed_ = (inverse_of_law_ * of_law).trace();
+  law_noise_ = inverse_of_law_ * of_law * inverse_of_law_;
 }
 
 GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {
   const std::vector<Eigen::Index> at(places.begin(), places.end());
   GramAxes axes;
-  const Eigenpairs pairs = SymmetricEigenpairs(free_(at, at));
-  const Eigen::Index count = (pairs.values.array() > kLeastOfAxis).count();  // the last ones
-  axes.values = pairs.values.tail(count).array();
+  const Eigen::MatrixXd free = free_(at, at);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free);
+  const Eigen::Index count = (pairs.eigenvalues().array() > kLeastOfAxis).count();  // the last ones
+  axes.values = pairs.eigenvalues().tail(count).array();
   axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);
-  axes.vectors(at, Eigen::all) = pairs.vectors.rightCols(count);
+  axes.vectors(at, Eigen::all) = pairs.eigenvectors().rightCols(count);
   const Eigen::ArrayXd norms = axes.values.sqrt();
   axes.coefficients = (axes.vectors.transpose() * free_residual_).array() / norms;
-  const Eigen::MatrixXd noise = Product(free_noise_, axes.vectors);
+  const Eigen::MatrixXd noise = free_noise_ * axes.vectors;
   axes.noise =
       (axes.vectors.cwiseProduct(noise).colwise().sum().transpose().array() / axes.values).max(1.0);
   return axes;
@@ -91,7 +91,7 @@ GramStep Gram::StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const {
   const Eigen::ArrayXd amounts = gains * axes.values.sqrt() * axes.coefficients;
   const Eigen::VectorXd omitted = -(axes.vectors * amounts.matrix());
   const Eigen::VectorXd law = -(inverse_of_law_ * law_residual_) - shares_ * omitted;
-  const Eigen::MatrixXd moved = Product(shares_, axes.vectors);
+  const Eigen::MatrixXd moved = shares_ * axes.vectors;
   const Eigen::MatrixXd errors =
       law_noise_ + moved * (gains * axes.noise).matrix().asDiagonal() * moved.transpose();
   const Eigen::VectorXd scale = law_norms_.cwiseInverse();

@@ -51,52 +51,40 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
                                 options.confidence)),
       variance_(noise.variance * noise.repeating),
       at_(std::move(at)) {
-  const std::vector<std::size_t> free(problem.parameters.free().begin(),
-                                      problem.parameters.free().end());
-  std::vector<std::size_t> inside;
-  std::vector<Eigen::Index> places;
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    if (solution.side[free[j]] != BoundSide::kInside) continue;
-    inside.push_back(free[j]);
-    places.push_back(static_cast<Eigen::Index>(j));
-  }
-  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, drawn_);
-  if (inside.size() < free.size()) {
-    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, drawn_);
-  }
+  local_ = AnalyseJacobian(problem, at_.jacobian, noise, drawn_);
   // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
   // than the noise's variance; beyond most_absorbed no more is corrected.
   if (noise.is_known || drawn_.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
-  const auto parameters = static_cast<double>(free.size());
-  const double absorbed = std::min(full_.absorbed, options.thresholds.most_absorbed * count);
+  const auto parameters = static_cast<double>(problem.parameters.free().size());
+  const double absorbed = std::min(local_.absorbed, options.thresholds.most_absorbed * count);
   if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
 }
 
-const LocalUncertainty& Estimates::LocalOf(std::size_t parameter) const {
-  return solution_.side[parameter] == BoundSide::kInside ? Conditional() : full_;
+std::optional<Eigen::Index> Estimates::PlaceOf(std::size_t parameter) const {
+  const std::vector<std::size_t>& free = problem_.parameters.free();
+  const auto place = std::ranges::find(free, parameter) - free.begin();
+  if (place == std::ssize(free) || !local_.determined[static_cast<std::size_t>(place)]) return {};
+  return place;
 }
 
 double Estimates::ErrorOfTheta(std::size_t parameter) const {
   if (problem_.parameters[parameter].fixed) return 0.0;
-  const LocalUncertainty& local = LocalOf(parameter);
-  const std::size_t j = local.PlaceOf(parameter);
-  if (j == local.columns.size() || !local.determined[j]) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const auto place = static_cast<Eigen::Index>(j);
-  return std::sqrt(local.factor(place, place) * variance_);
+  const std::optional<Eigen::Index> place = PlaceOf(parameter);
+  if (!place) return std::numeric_limits<double>::infinity();
+  return std::sqrt(local_.factor(*place, *place) * variance_);
 }
 
 std::vector<double> Estimates::Beside(std::size_t parameter, double step) const {
   std::vector<double> theta = solution_.theta;
   theta[parameter] += step;
-  const LocalUncertainty& local = LocalOf(parameter);
-  const auto place = static_cast<Eigen::Index>(local.PlaceOf(parameter));
-  const double own = local.white_factor(place, place);
-  for (std::size_t j = 0; j < local.columns.size() && own > 0; ++j) {
-    if (local.columns[j] == parameter) continue;
-    theta[local.columns[j]] += step * local.white_factor(static_cast<Eigen::Index>(j), place) / own;
+  const std::optional<Eigen::Index> place = PlaceOf(parameter);
+  if (!place) return theta;
+  const Eigen::VectorXd others =
+      local_.white_factor.col(*place) / local_.white_factor(*place, *place);
+  for (Eigen::Index j = 0; j < others.size(); ++j) {
+    if (j != *place)
+      theta[problem_.parameters.free()[static_cast<std::size_t>(j)]] += step * others[j];
   }
   return theta;
 }
@@ -132,32 +120,25 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
-  const LocalUncertainty& local = Conditional();
-  const std::size_t i = local.PlaceOf(row);
-  const std::size_t j = local.PlaceOf(column);
-  const std::size_t none = local.columns.size();
-  if (i == none || j == none || !local.determined[i] || !local.determined[j]) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
+  const std::optional<Eigen::Index> i = PlaceOf(row);
+  const std::optional<Eigen::Index> j = PlaceOf(column);
+  if (!i || !j) return std::numeric_limits<double>::quiet_NaN();
   if (i == j) return 1.0;
   const auto sign = [&](std::size_t p) {
     return problem_.parameters[p].scale < 0 ? -1.0 : 1.0;  // the value falls where θ grows
   };
-  const auto& factor = local.factor;
-  const auto a = static_cast<Eigen::Index>(i);
-  const auto b = static_cast<Eigen::Index>(j);
-  const double cosine = factor(a, b) / std::sqrt(factor(a, a) * factor(b, b));
+  const Eigen::MatrixXd& factor = local_.factor;
+  const double cosine = factor(*i, *j) / std::sqrt(factor(*i, *i) * factor(*j, *j));
   return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
 double Estimates::WhiteShare(std::size_t parameter) const {
-  const std::size_t j = full_.PlaceOf(parameter);
-  if (j == full_.columns.size() || !full_.determined[j]) return 1.0;
-  const auto place = static_cast<Eigen::Index>(j);
+  const std::optional<Eigen::Index> place = PlaceOf(parameter);
+  if (!place) return 1.0;
+  const double variance = variance_ * local_.factor(*place, *place);
   // A correlation that is estimated from a handful of residuals may leave no variance at all.
-  if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
-  return noise_.variance * full_.white_factor(place, place) /
-         (variance_ * full_.factor(place, place));
+  if (!(variance > 0)) return 1.0;
+  return noise_.variance * local_.white_factor(*place, *place) / variance;
 }
 
 namespace {

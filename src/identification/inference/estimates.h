@@ -62,14 +62,14 @@ class Estimates {
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
 
-  /// NaN where either parameter is fixed, at a bound or undetermined.
+  /// NaN where either parameter is fixed or undetermined.
   [[nodiscard]] double Correlation(std::size_t row, std::size_t column) const;
 
   /// Standard error of θ; infinite where it is not determined, 0 where fixed.
   [[nodiscard]] double ErrorOfTheta(std::size_t parameter) const;
 
   /// Returns the uncertainty of all free parameters together.
-  [[nodiscard]] const LocalUncertainty& local() const { return full_; }
+  [[nodiscard]] const LocalUncertainty& local() const { return local_; }
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this fraction a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
@@ -88,9 +88,8 @@ class Estimates {
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
 
  private:
-  [[nodiscard]] const LocalUncertainty& LocalOf(std::size_t parameter) const;
-  /// Returns the uncertainty of the parameters inside their bounds, the others held there.
-  [[nodiscard]] const LocalUncertainty& Conditional() const { return held_ ? *held_ : full_; }
+  /// Returns the place among the free parameters; nothing of one that is fixed or undetermined.
+  [[nodiscard]] std::optional<Eigen::Index> PlaceOf(std::size_t parameter) const;
 
   const Problem& problem_;
   const Solution& solution_;
@@ -100,8 +99,7 @@ class Estimates {
   double quantile_;
   double variance_;
   Linearization at_;
-  LocalUncertainty full_;                 // of all free parameters
-  std::optional<LocalUncertainty> held_;  // with others held at bounds, where any are
+  LocalUncertainty local_;  // of all free parameters
 };
 
 /// Returns what a solution says of the parameters that are reported: values, without errors.

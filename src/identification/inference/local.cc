@@ -1,12 +1,10 @@
 #include "identification/inference/local.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "identification/dense.h"
 
 namespace mindahl::identification {
 namespace {
@@ -55,15 +53,11 @@ Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen
 /// Returns a root L of a symmetric matrix, LLᵀ = M, without what rounding leaves below zero.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& matrix) {
   if (matrix.size() == 0) return matrix;  // which Eigen's solver does not take
-  const Eigenpairs pairs = SymmetricEigenpairs((matrix + matrix.transpose()) / 2);
-  return pairs.vectors * pairs.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs((matrix + matrix.transpose()) / 2);
+  return pairs.eigenvectors() * pairs.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
-
-std::size_t LocalUncertainty::PlaceOf(std::size_t parameter) const {
-  return static_cast<std::size_t>(std::ranges::find(columns, parameter) - columns.begin());
-}
 
 Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
                           std::span<const std::size_t> columns) {
@@ -95,8 +89,8 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   Eigen::MatrixXd of_force = jacobian;
   if (drawn.size() > 0) {
-    const Eigen::MatrixXd moved = TransposedProduct(jacobian, drawn);
-    product = Product(moved, moved.transpose()) /
+    const Eigen::MatrixXd moved = jacobian.transpose() * drawn;
+    product = moved * moved.transpose() /
               (static_cast<double>(drawn.cols()) * (noise.variance * noise.repeating));
     const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
     of_force = share.asDiagonal() * jacobian;
@@ -111,22 +105,19 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
   return product;
 }
 
-LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
-                                 Eigen::MatrixXd jacobian, const Noise& noise,
-                                 const Eigen::MatrixXd& drawn) {
+LocalUncertainty AnalyseJacobian(const Problem& problem, const Eigen::MatrixXd& jacobian,
+                                 const Noise& noise, const Eigen::MatrixXd& drawn) {
   LocalUncertainty result;
-  result.columns = std::move(columns);
-  const std::size_t count = result.columns.size();
-  const auto size = static_cast<Eigen::Index>(count);
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  const Eigen::Index size = std::ssize(free);
   result.factor = result.white_factor = Eigen::MatrixXd::Zero(size, size);
-  result.determined.assign(count, true);
-  if (count == 0) return result;
+  result.determined.assign(free.size(), true);
+  if (size == 0) return result;
 
   // A prior is one more reading, with the noise of the others.
   Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index j = 0; j < size; ++j) {
-    priors(j, j) =
-        problem.parameters[result.columns[static_cast<std::size_t>(j)]].prior_root_weight;
+    priors(j, j) = problem.parameters[free[static_cast<std::size_t>(j)]].prior_root_weight;
   }
   const bool any_prior = !priors.isZero(0.0);
   const bool is_white =
@@ -148,13 +139,13 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   Eigen::MatrixXd root = half;
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {
-    const Eigen::MatrixXd orthonormal = Product(jacobian, inverse_norms.asDiagonal() * half);
+    const Eigen::MatrixXd orthonormal = jacobian * (inverse_norms.asDiagonal() * half);
     Eigen::MatrixXd product =
         CorrelatedProduct(*problem.data, noise.autocorrelation, noise, drawn, orthonormal);
     result.absorbed = product.trace();
-    const Eigen::MatrixXd of_priors = Product(priors, inverse_norms.asDiagonal() * half);
-    product += TransposedProduct(of_priors, of_priors);
-    root = Product(half, RootOf(product));
+    const Eigen::MatrixXd of_priors = priors * (inverse_norms.asDiagonal() * half);
+    product += of_priors.transpose() * of_priors;
+    root = half * RootOf(product);
   }
   const Eigen::MatrixXd in_theta = inverse_norms.asDiagonal() * root;
   const Eigen::MatrixXd white_in_theta = inverse_norms.asDiagonal() * half;

@@ -13,20 +13,16 @@ namespace mindahl::identification {
 /// Holds the uncertainty of the free parameters by the Jacobian at the solution, without a noise
 /// level: covariance = variance of a residual × `factor`.
 struct LocalUncertainty {
-  std::vector<std::size_t> columns;  // positions in θ, those not held at a bound
-  /// columns²: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the correlation of the residuals;
-  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's fraction of the noise
-  /// and E the K drawn residuals
+  /// A row and a column a free parameter: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the
+  /// correlation of the residuals; with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the
+  /// force's fraction of the noise and E the K drawn residuals
   Eigen::MatrixXd factor;
   Eigen::MatrixXd white_factor;  // (JᵀJ)⁻¹: what white residuals would give
   /// Residuals' worth of noise that the fit takes up, tr((JᵀJ)⁻¹JᵀRJ): the number of parameters
   /// where the residuals are white, more where they are autocorrelated as the response is.
   double absorbed = 0.0;
-  std::vector<bool> determined;           // of each column: no part in a direction without effect
+  std::vector<bool> determined;           // of each: no part in a direction without effect
   std::vector<std::vector<double>> null;  // directions in θ without effect on the residual
-
-  /// Returns the place of a parameter among the columns; columns.size() where it has none.
-  [[nodiscard]] std::size_t PlaceOf(std::size_t parameter) const;
 };
 
 /// A problem near one point.
@@ -57,10 +53,9 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
 
 /// Singular value decomposition of the Jacobian, columns scaled to unit norm: never fails, and
 /// names the directions that the data leave open where it is rank deficient.
-/// @param columns  positions in θ to differentiate by
-/// @param drawn    as of CorrelatedProduct()
-LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
-                                 Eigen::MatrixXd jacobian, const Noise& noise,
-                                 const Eigen::MatrixXd& drawn);
+/// @param jacobian  by all free parameters
+/// @param drawn     as of CorrelatedProduct()
+LocalUncertainty AnalyseJacobian(const Problem& problem, const Eigen::MatrixXd& jacobian,
+                                 const Noise& noise, const Eigen::MatrixXd& drawn);
 
 }  // namespace mindahl::identification

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/probability.h"
-#include "identification/dense.h"
 #include "identification/problem/scaled_records.h"
 
 namespace mindahl::identification {
@@ -101,64 +100,43 @@ Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
   return ProcessOf(EstimateAutocovariances(records, residual, HighestOrderOf(count)), count);
 }
 
-double Autocorrelation::SquaredCorrelations() const {
-  double sum = 1.0;
-  if (order == 0) return sum;
-  std::array<double, kHighestOrder> recent{};  // ρ, newest first
-  for (std::size_t lag = 1; lag <= order; ++lag) {
-    sum += 2 * correlations[lag] * correlations[lag];
-    recent[order - lag] = correlations[lag];
+std::vector<double> Autocorrelation::AllCorrelations() const {
+  std::vector<double> all(correlations.begin(), correlations.begin() + order + 1);
+  double recent = order > 0 ? 1.0 : 0.0;
+  while (recent >= kForgotten && all.size() < kLongestMemory) {
+    // Beyond the order ρ obeys the recursion of r itself.
+    double next = 0.0;
+    for (std::size_t k = 0; k < order; ++k) next += coefficients[k] * all[all.size() - 1 - k];
+    all.push_back(next);
+    recent = 0.0;
+    for (std::size_t k = 0; k < order; ++k) {
+      recent = std::max(recent, std::abs(all[all.size() - 1 - k]));
+    }
   }
-  // Beyond the order ρ obeys the recursion of r itself.
-  for (std::size_t lag = order + 1; lag < kLongestMemory; ++lag) {
-    double value = 0.0;
-    double largest = 0.0;
-    for (std::size_t k = 0; k < order; ++k) value += coefficients[k] * recent[k];
-    for (std::size_t k = order - 1; k > 0; --k) recent[k] = recent[k - 1];
-    recent[0] = value;
-    sum += 2 * value * value;
-    for (std::size_t k = 0; k < order; ++k) largest = std::max(largest, std::abs(recent[k]));
-    if (largest < kForgotten) break;
-  }
-  return sum;
+  return all;
 }
 
-Eigen::MatrixXd Autocorrelation::FilterBackwards(
-    const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  // A column a sample, so that those of one time lie side by side; the latest first.
-  const Eigen::Index rows = columns.rows();
-  Eigen::MatrixXd filtered(columns.cols(), rows + 64);
-  const auto depth = static_cast<Eigen::Index>(order);
-  double largest = 0.0;
-  Eigen::Index i = 0;
-  for (; i < rows + static_cast<Eigen::Index>(kLongestMemory); ++i) {
-    if (i == filtered.cols()) filtered.conservativeResize(Eigen::NoChange, 2 * i);
-    auto out = filtered.col(i);
-    if (i < rows) {
-      out = columns.row(rows - 1 - i).transpose();
-    } else {
-      out.setZero();
-    }
-    for (Eigen::Index k = 0; k < std::min(depth, i); ++k) {
-      out += coefficients[static_cast<std::size_t>(k)] * filtered.col(i - 1 - k);
-    }
-    largest = std::max(largest, out.cwiseAbs().maxCoeff());
-    if (i < rows) continue;
-    const Eigen::Index recent = std::min(depth, i + 1);
-    if (filtered.middleCols(i + 1 - recent, recent).cwiseAbs().maxCoeff() < kForgotten * largest) {
-      ++i;
-      break;
-    }
-  }
-  filtered.conservativeResize(Eigen::NoChange, i);
-  return filtered;
+double Autocorrelation::SquaredCorrelations() const {
+  double sum = 0.0;
+  for (const double correlation : AllCorrelations()) sum += correlation * correlation;
+  return order > 0 ? 2 * sum - 1 : 1.0;
 }
 
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
+  if (order == 0 || columns.cols() == 0) return columns.transpose() * columns;
+  // The columns filtered backwards by 1/φ, on to earlier times until they have decayed: a column a
+  // sample, so that those of one time lie side by side, the latest first.
+  const Eigen::Index memory = std::ssize(AllCorrelations());
+  Eigen::MatrixXd filtered = Eigen::MatrixXd::Zero(columns.cols(), columns.rows() + memory);
+  filtered.leftCols(columns.rows()) = columns.transpose().rowwise().reverse();
+  for (Eigen::Index i = 1; i < filtered.cols(); ++i) {
+    for (Eigen::Index k = 0; k < std::min(static_cast<Eigen::Index>(order), i); ++k) {
+      filtered.col(i) += coefficients[static_cast<std::size_t>(k)] * filtered.col(i - 1 - k);
+    }
+  }
   // Symmetric to the last bit.
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  square.selfadjointView<Eigen::Lower>().rankUpdate(FilterBackwards(columns));
+  square.selfadjointView<Eigen::Lower>().rankUpdate(filtered);
   square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
   return innovation_share * square;
 }

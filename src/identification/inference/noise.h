@@ -32,10 +32,8 @@ struct Autocorrelation {
   [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 
  private:
-  /// Filters columns backwards by 1/φ, on to earlier times until they have decayed.
-  /// @returns a column a sample, the latest first
-  [[nodiscard]] Eigen::MatrixXd FilterBackwards(
-      const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// Returns ρ₀, ρ₁ … of all lags, until they have decayed.
+  [[nodiscard]] std::vector<double> AllCorrelations() const;
 };
 
 /// @param residual  of every sample of the records, one after the other; those that do not count
