@@ -151,13 +151,11 @@ bool TellsTheLaw(const FitResult& result) {
   });
 }
 
-/// Fits without priors: what the records say by themselves, and the noise that priors weigh
-/// against.
-FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
-                           const FitOptions& options) {
+/// Returns the noise that priors weigh against [N or m]: that of a fit without them.
+double NoiseWithoutPriors(std::span<const RecordView> records, const FitOptions& options) {
   FitOptions open = options;
   open.priors.clear();
-  return Fitter(open).Fit(records, std::min(depth, Depth::kErrors));
+  return Fitter(open).Fit(records, Depth::kEstimate).ResponseNoise();
 }
 
 /// Cuts intervals at bounds that are given: what the model misses and rivals widened them by.
@@ -199,21 +197,13 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
   AddColumns(given, prepared, data);
-  std::optional<FitResult> without_priors;
   if (!given.priors.empty()) {
-    without_priors = FitWithoutPriors(records, depth, given);
-    data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
+    data.prior_noise = NoiseWithoutPriors(records, given) / data.response_unit();
   }
   RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
 
-  const Attempt attempt{given,
-                        depth,
-                        prepared,
-                        drawn.get(),
-                        data,
-                        solver,
-                        without_priors ? &*without_priors : nullptr};
+  const Attempt attempt{given, depth, prepared, drawn.get(), data, solver};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

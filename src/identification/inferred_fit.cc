@@ -143,9 +143,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     if (!problem.data->is_forced()) Append(result.findings, FindForceAtLimit(attempt.prepared));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
-  if (attempt.without_priors != nullptr) {
-    Append(result.findings, FindContradictedPrior(*attempt.without_priors, result, options));
-  }
+  Append(result.findings, FindContradictedPrior(fitted, thresholds));
   Append(result.findings, FindOpenSlipForce(result));
   if (is_judged && IsInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result));

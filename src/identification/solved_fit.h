@@ -26,7 +26,6 @@ struct Attempt {
   const loop::DrawnReadings* drawn;  // of these; null where exact
   ScaledRecords& data;
   Solver& solver;
-  const FitResult* without_priors = nullptr;  ///< null where there is none
 };
 
 /// Holds the least squares of some records: what every later stage starts from.

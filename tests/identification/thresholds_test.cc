@@ -49,17 +49,6 @@ bool LoopIsSeen(const Thresholds& thresholds, double r_squared) {
   return !FindUnseenLoop(result, thresholds);
 }
 
-/// A prior of α so many standard deviations off, which prior and record make in equal parts.
-bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
-  FitResult result = Made();
-  ParameterEstimate& alpha = result.parameters[kShape];
-  constexpr double kError = 0.01;
-  alpha.standard_error = kError;
-  FitOptions options = With(thresholds);
-  options.priors["alpha"] = {alpha.value + distance * std::numbers::sqrt2 * kError, kError};
-  return FindContradictedPrior(result, result, options).has_value();
-}
-
 // --- tests and profiles on stages
 
 /// A rig tried for a loop of another shape, at a variance of the noise given by hand.
@@ -234,10 +223,6 @@ const std::vector<Row>& Cases() {
       {&Thresholds::load_change,
        [](const Thresholds& t) {
          return !LoadIsFollowed(t, kBelow * 0.01) && LoadIsFollowed(t, kAbove * 0.01);
-       }},
-      {&Thresholds::prior_distance,
-       [](const Thresholds& t) {
-         return !PriorIsContradicted(t, kBelow * 3.0) && PriorIsContradicted(t, kAbove * 3.0);
        }},
 
   };

@@ -47,9 +47,6 @@ struct Thresholds {
   /// [half interval of ln Tc] Above it the likelihood is profiled, not approximated by a parabola.
   /// exp(0.1) − 1 differs from 0.1 by a twentieth, and so do the ends of the interval.
   double parabola_error = 0.1;
-  /// [fraction of 2 ln Λ] A larger deviation from the parabola, at its 95 % ends of Tc, calls for
-  /// a profile. 15 % of 2 ln Λ are 7 % of the interval's width.
-  double parabola_departure = 0.15;
   /// [T* over Tc] A loop that reaches less is always profiled, and if it slides its slip force ran
   /// away. Below it the parabola may miss the curved valley of α and Tc; a loop that slides has
   /// carried its slip force, but for the last of an asymptote.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,24 +86,19 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const bool is_followed = !record.load_ratio.empty();
-    if (!is_followed && record.load_change.empty()) continue;
-    double sum = 0.0;
-    double squares = 0.0;
-    double count = 0.0;
+    const std::vector<double>& load = is_followed ? record.load_ratio : record.load_change;
+    if (load.empty()) continue;
+    std::vector<double> counted;
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] == 0) continue;
-      const double change = is_followed ? record.load_ratio[i] - 1 : record.load_change[i];
-      sum += change;
-      squares += change * change;
-      ++count;
+      if (record.counts[i] != 0) counted.push_back(load[i]);
     }
+    const Eigen::Map<const Eigen::ArrayXd> of(counted.data(), std::ssize(counted));
     // The mean of a load of either sign differs from that of its magnitude.
-    const double mean = sum / std::max(count, 1.0);
-    const double variance = squares / std::max(count, 1.0) - mean * mean;
+    const double variation = std::sqrt(2 * (of - of.mean()).square().mean());
     findings.push_back(OfRecord(
         r, data.records.size(),
         {.code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
-         .numbers = {{"variation", std::sqrt(2 * std::max(variance, 0.0))}}}));
+         .numbers = {{"variation", variation}}}));
   }
   return findings;
 }
@@ -139,27 +135,21 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   return findings;
 }
 
-std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitResult& result,
-                                             const FitOptions& options) {
+std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
+                                             const Thresholds& thresholds) {
+  const Problem& problem = fitted.problem();
   Finding finding{.code = "prior_contradicted"};
   double farthest = 0.0;
-  for (const ParameterEstimate& with_prior : result.parameters) {
-    const auto given = options.priors.find(with_prior.name);
-    if (given == options.priors.end()) continue;
-    const ParameterEstimate* const own = without.Find(with_prior.name);
-    const bool is_open = own == nullptr || !own->standard_error;
-    const ParameterEstimate& estimate = is_open ? with_prior : *own;
-    const auto& [prior, uncertainty] = given->second;
-    const double value = estimate.value;
-    const double error = is_open ? 0.0 : *own->standard_error;
-    const Term* term = FindTerm(TermNameOf(estimate.name), without.response);
-    const bool is_positive = term != nullptr && term->positive;
-    const double distance =
-        is_positive ? std::log(value / prior) / std::hypot(error / value, uncertainty / prior)
-                    : (value - prior) / std::hypot(error, uncertainty);
-    if (!(std::abs(distance) > options.thresholds.prior_distance)) continue;
-    finding.parameters.push_back(estimate.name);
-    farthest = std::max(farthest, std::abs(distance));
+  for (const std::size_t p : problem.parameters.with_prior()) {
+    const Parameter& parameter = problem.parameters[p];
+    const double uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
+    // Of the fit, which has the prior: (own − prior)/√(error² + uncertainty²) of the records' own.
+    const double left = uncertainty * uncertainty - std::pow(fitted.ErrorOfTheta(p), 2);
+    const double distance = std::abs(fitted.solution().theta[p] - parameter.prior_theta) /
+                            (left > 0 ? std::sqrt(left) : uncertainty);
+    if (!(distance > thresholds.prior_distance)) continue;
+    finding.parameters.push_back(problem.parameters.NameOf(p));
+    farthest = std::max(farthest, distance);
   }
   if (finding.parameters.empty()) return std::nullopt;
   finding.numbers = {{"distance", farthest}};

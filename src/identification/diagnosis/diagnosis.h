@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
@@ -38,11 +39,9 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 
-/// `prior_contradicted`: parameters whose prior lies far from what the records say without it, and,
+/// `prior_contradicted`: parameters whose prior lies far from what the records say without it;
 /// where these leave a parameter open, from what they say with it.
-/// @param without  the fit without priors
-std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitResult& result,
-                                             const FitOptions& options);
+std::optional<Finding> FindContradictedPrior(const Estimates& fitted, const Thresholds& thresholds);
 
 /// Closed intervals too wide to call a parameter known, of those that no other finding calls
 /// unknown.

@@ -130,23 +130,6 @@ bool IsOpenAbove(HeldParameter& held, const Estimates& fitted, const Thresholds&
   return held.At(far, fitted.solution().theta) < thresholds.open_slip_force;
 }
 
-/// True if the likelihood at the upper end of the parabola's interval of Tc is another: a skewness
-/// shows at either end.
-bool IsSkewed(const Estimates& fitted, const FitOptions& options, Solver& solver) {
-  SolverOptions search = SolverOptionsOf(options);
-  // The parabola predicts the cost at the end.
-  search.predicts_last = true;
-  constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
-  const double critical = fitted.critical();
-  const double variance = fitted.noise().variance;
-  search.last_step =
-      kLastGain * variance / (fitted.solution().sum_of_squares + critical * variance);
-  HeldParameter held(fitted, kSlipForce, search, solver);
-  const std::vector<double> start = fitted.Beside(kSlipForce, fitted.HalfWidth(kSlipForce));
-  const double ratio = held.At(start[kSlipForce], start) / critical;
-  return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
-}
-
 bool IsFree(const Estimates& fitted, std::size_t parameter) {
   const Parameter& of = fitted.problem().parameters[parameter];
   return !of.fixed && !of.absent;
@@ -179,8 +162,7 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
       (!slips || std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
-       is_badly_known(kSlipForce) || IsSkewed(fitted, options, solver) ||
-       MayBeFarFromSlip(fitted, result, options, solver));
+       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options, solver));
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig};
   if (is_badly_known(kStiffness)) return {kStiffness};
   return {};
@@ -219,8 +201,7 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
     if (!estimate.lower95 || !estimate.upper95) {
       estimate.standard_error.reset();
     } else if (estimate.standard_error) {
-      const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
-      estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
+      estimate.standard_error = (*estimate.upper95 - *estimate.lower95) / 2 / quantile;
     }
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];

@@ -23,9 +23,8 @@ Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& o
              Solver& solver);
 
 /// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig of
-/// which the parabola may be wrong: of a loop that hardly slips, at a bound, where they are badly
-/// known, and where the likelihood at the parabola's ends is another one. A standard error that was
-/// too small follows. Where Tc is open above, so is α.
+/// which the parabola may be wrong: of a loop that hardly slips, at a bound, and where they are
+/// badly known. The standard error follows. Where Tc is open above, so is α.
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver);
 
