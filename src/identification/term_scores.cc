@@ -31,6 +31,24 @@ double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   return parameter.term->positive ? parameter.theta : parameter.ToTheta(0.0);
 }
 
+/// θ of a problem at the fit's solution, with terms that the fit does not have without effect.
+std::vector<double> ThetaOf(const Problem& problem, const FitResult& fit) {
+  const Parameters& parameters = problem.parameters;
+  std::vector<double> theta(parameters.size());
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ParameterEstimate* const fitted = fit.Find(parameters.NameOf(p));
+    theta[p] = fitted != nullptr     ? parameters[p].ToTheta(fitted->value)
+               : parameters[p].fixed ? parameters[p].theta
+                                     : ThetaWithoutEffect(parameters, p);
+  }
+  return theta;
+}
+
+bool WasFree(const FitResult& fit, const std::string& name) {
+  const ParameterEstimate* const fitted = fit.Find(name);
+  return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
+}
+
 }  // namespace
 
 FitOptions TermChoice::AddedTo(FitOptions options) const {
@@ -55,41 +73,29 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
   AddColumns(with_all, prepared_, data_);
 }
 
-Problem TermScores::ProblemOf(const FitOptions& options) const {
+Problem TermScores::ProblemOf(const FitResult& fit, const FitOptions& options) const {
+  const std::vector states(data_.records.size(), fit.initial_state);
   FitOptions with_columns = options;
   with_columns.covariates = covariates_;
   with_columns.start.clear();
-  return {&data_, options.model, states_, Parameters(data_, with_columns, states_)};
-}
-
-/// θ of a problem at the fit's solution, with terms that the fit does not have without effect.
-std::vector<double> TermScores::ThetaOf(const Problem& problem) const {
-  const Parameters& parameters = problem.parameters;
-  std::vector<double> theta(parameters.size());
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto fitted = values_.find(parameters.NameOf(p));
-    const bool is_new = fitted == values_.end() && !parameters[p].fixed;
-    theta[p] = fitted != values_.end() ? parameters[p].ToTheta(fitted->second)
-               : is_new                ? ThetaWithoutEffect(parameters, p)
-                                       : parameters[p].theta;
-  }
-  return theta;
+  return {&data_, options.model, states, Parameters(data_, with_columns, states)};
 }
 
 /// Adds the columns of a choice to those of all: of exponents that shape columns that the fit does
 /// not have the value is taken with which the residuals become least.
-std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice,
+std::vector<TermScores::Added> TermScores::AddColumnsOf(const FitResult& fit,
+                                                        const TermChoice& choice,
                                                         const FitOptions& options,
                                                         std::vector<Eigen::VectorXd>& columns) {
-  const Problem problem = ProblemOf(choice.AddedTo(options));
+  const Problem problem = ProblemOf(fit, choice.AddedTo(options));
   const Parameters& parameters = problem.parameters;
-  std::vector<double> theta = ThetaOf(problem);
+  std::vector<double> theta = ThetaOf(problem, fit);
   std::vector<std::size_t> added;
   bool shapes_new = false;
   std::optional<std::size_t> exponent;
   for (const std::size_t p : parameters.free()) {
     const Parameter& parameter = parameters[p];
-    if (free_.contains(parameters.NameOf(p))) continue;
+    if (WasFree(fit, parameters.NameOf(p))) continue;
     if (parameter.term->of_column && parameter.column_name != choice.covariate) continue;
     added.push_back(p);
     shapes_new = shapes_new || !parameter.is_exponent();
@@ -127,21 +133,14 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
 
 void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
                           std::span<const TermChoice> choices) {
-  states_.assign(data_.records.size(), fit.initial_state);
   for (std::size_t r = 0; r < data_.records.size(); ++r) {
     data_.records[r].turns_between = fit.records[r].turns_between;
   }
-  values_.clear();
-  free_.clear();
-  for (const ParameterEstimate& estimate : fit.parameters) {
-    values_.emplace(estimate.name, estimate.value);
-    if (estimate.status != ParameterStatus::kFixed) free_.insert(estimate.name);
-  }
-  const Problem problem = ProblemOf(options);
-  const std::vector<double> theta = ThetaOf(problem);
+  const Problem problem = ProblemOf(fit, options);
+  const std::vector<double> theta = ThetaOf(problem, fit);
   std::vector<std::size_t> inside;
   for (const std::size_t p : problem.parameters.free()) {
-    if (!free_.contains(problem.parameters.NameOf(p))) continue;
+    if (!WasFree(fit, problem.parameters.NameOf(p))) continue;
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
   const auto& [jacobian, residual] = LinearizeAt(problem, theta, response_, inside);
@@ -153,7 +152,7 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   std::vector<Eigen::VectorXd> columns;
   for (const TermChoice& choice : choices) {
     try {
-      choices_.push_back(AddColumnsOf(choice, options, columns));
+      choices_.push_back(AddColumnsOf(fit, choice, options, columns));
     } catch (const InvalidArgument&) {
       choices_.emplace_back();  // no lag where time does not go on
     }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,9 +62,9 @@ class TermScores {
     double theta = 0.0;                      // at which the derivatives are
     std::optional<Eigen::Index> place = {};  // of its column; empty where it has no effect
   };
-  [[nodiscard]] Problem ProblemOf(const FitOptions& options) const;
-  [[nodiscard]] std::vector<double> ThetaOf(const Problem& problem) const;
-  [[nodiscard]] std::vector<Added> AddColumnsOf(const TermChoice& choice, const FitOptions& options,
+  [[nodiscard]] Problem ProblemOf(const FitResult& fit, const FitOptions& options) const;
+  [[nodiscard]] std::vector<Added> AddColumnsOf(const FitResult& fit, const TermChoice& choice,
+                                                const FitOptions& options,
                                                 std::vector<Eigen::VectorXd>& columns);
 
   std::vector<std::string> covariates_;
@@ -73,9 +72,6 @@ class TermScores {
   ScaledRecords data_;
   Response response_;
   // The fit from which the steps are taken:
-  std::map<std::string, double> values_;  // of its parameters
-  std::set<std::string> free_;            // of these
-  std::vector<models::InitialState> states_;
   double effective_samples_ = 1.0;
   std::vector<std::string> names_;  // of those that are inside their bounds
   Eigen::VectorXd freed_;           // what these leave of the residuals

@@ -164,16 +164,6 @@ bool IsUnphysical(const FitResult& fit) {
   });
 }
 
-/// Drops the causes whose remedy was tried and refused: advice that would be followed in vain.
-void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
-  const TermGroup* group = FindTermGroup(refused.name);
-  std::erase_if(causes, [&](const Cause& cause) {
-    if (group == nullptr) return NameOfCovariate(cause.term) == refused.name;
-    const TermGroup* other = FindTermGroup(cause.term);
-    return other != nullptr && other->terms.front() == group->terms.front();
-  });
-}
-
 /// Holds the law that another candidate of a round gives in place of the one that was added.
 struct Alternative {
   std::string name;
@@ -478,9 +468,7 @@ TermSelection Selection::Run(const FitOptions& options) {
   }
   if (!result_.added.empty()) FitLast(law);
   for (const TermCandidate& candidate : candidates_) {
-    const ConsideredTerm& considered = candidate.considered;
-    if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
-    result_.considered.push_back(considered);
+    result_.considered.push_back(candidate.considered);
   }
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
   std::ranges::stable_sort(result_.considered, {}, [&](const ConsideredTerm& term) {
