@@ -150,11 +150,11 @@ Value CellValue(std::string_view cell) {
 }  // namespace
 
 std::string CycleTableHeader(bool is_torsional) {
-  const report::Units& units = report::UnitsOf(is_torsional);
   std::string header = "cycle,first_line,samples";
   for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
-    header += fmt::format(",{}", column.name);
-    if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
+    const bool has_other_unit = is_torsional && !column.unit.empty();
+    header += ',' + report::WithUnit(column.name, has_other_unit ? report::UnitOfTorque(column.unit)
+                                                                 : std::string(column.unit));
   }
   return header + ",accumulated_energy [J],flags\n";
 }

@@ -337,9 +337,10 @@ std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 std::vector<Evolution> BeginEvolutions(bool is_torsional) {
   std::vector<Evolution> evolutions;
   for (const TrackedQuantity& quantity : kQuantities) {
-    const std::string_view unit = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
+    const std::string_view own = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
+    const std::string_view unit = own.empty() ? "-" : own;
     evolutions.push_back(
-        {&quantity, report::UnitIn(report::UnitsOf(is_torsional), unit.empty() ? "-" : unit)});
+        {&quantity, is_torsional ? report::UnitOfTorque(unit) : std::string(unit)});
   }
   return evolutions;
 }

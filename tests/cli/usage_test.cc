@@ -157,7 +157,8 @@ const std::vector<BadUsage> kBadUsage = {
     {"convert ~ --amplitude 1 --to lammps --input-lines -", "--normal-load"},
     {"convert ~ --amplitude 1 --to dahl --normal-load 3", "unless --to is lammps"},
     {"convert ~ --amplitude 1 --to dahl --json - --input-lines -", "give each a file"},
-    {"convert ~ --amplitude 1 --to dahl --tolerance little", "--tolerance: 'little' is no quantity in -"},
+    {"convert ~ --amplitude 1 --to dahl --tolerance little",
+     "--tolerance: 'little' is no quantity in -"},
     {"contact --friction 0.3 --json #", "--normal-load"},
     {"contact --friction 0.3 --normal-load 1 --youngs-modulus-1 1e9 --poisson-1 0.3 "
      "--radius-1 inf --youngs-modulus-2 1e9 --poisson-2 0.3 --radius-2 inf",

@@ -35,7 +35,8 @@ double LargestErrorOfTurns(Wave wave, int samples_a_cycle) {
     const std::vector<models::Turn> turns = TurnsOf(scaled);
     // The first and the last one may have no two samples on either side.
     for (std::size_t k = 1; k + 1 < turns.size(); ++k) {
-      const double at = turns[k].displacement * stages.data.length + scaled.units.displacement_reference;
+      const double at =
+          turns[k].displacement * stages.data.length + scaled.units.displacement_reference;
       largest = std::max(largest, std::abs(at - (at > 0 ? greatest : least)) / kReach);
     }
   }

@@ -16,7 +16,9 @@ struct FiveSamples {
   std::array<double, 5> t;
 
   /// Velocity of the step from sample k to the next.
-  [[nodiscard]] double Velocity(std::size_t k) const { return (x[k + 1] - x[k]) / (t[k + 1] - t[k]); }
+  [[nodiscard]] double Velocity(std::size_t k) const {
+    return (x[k + 1] - x[k]) / (t[k + 1] - t[k]);
+  }
 };
 
 /// Returns where the lines of both strokes meet; nothing where the velocity changes elsewhere than
@@ -78,7 +80,8 @@ std::vector<models::Turn> TurnsOf(const ScaledRecord& record) {
     models::Turn& turn = turns.emplace_back(record.reversals[k] + 1, x[i]);
     // All five lie on the two strokes that meet here.
     const std::size_t first = k > 0 ? motion.reversals[k - 1] : 0;
-    const std::size_t last = k + 1 < motion.reversals.size() ? motion.reversals[k + 1] : x.size() - 1;
+    const std::size_t last =
+        k + 1 < motion.reversals.size() ? motion.reversals[k + 1] : x.size() - 1;
     if (!motion.turns_between || i < first + 2 || i + 2 > last) continue;
     FiveSamples about{};
     for (std::size_t j = 0; j < about.x.size(); ++j) {
