@@ -155,7 +155,7 @@ x [m],p [bar]¶1,2¶ | - | p | :1:2: the unit 'bar' of 'p [bar]' (column 2) is n
    displacement: must be one of rad, mrad, deg, rev, as in --displacement '2 [rad]', or with a factor
    '#2*0.001 [rad]'
 angle,F¶1,2¶ | - | [kN] | : the unit 'kN' of 'F' (column 2) is not known for the force: must be one of
-   N m, mN m, uN m, kN m, N mm, lbf in, lbf ft, as in --force '2 [N m]', or with a factor
+   N m, N mm, as in --force '2 [N m]', or with a factor
    '#2*0.001 [N m]'
 left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
    and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
