@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <limits>
 #include <vector>
 
 #include "identification/continued_fit.h"
@@ -13,11 +13,13 @@
 #include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 namespace {
 
+using models::InitialState;
 using models::Memory;
 
 /// True if the two laws can have a σ and a Tc of their own: not before the motion turns; σ and Tc
@@ -34,6 +36,13 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {
     return options.fixed.contains(name) || options.bounds.contains(name);
   });
+}
+
+/// True if a record starts inside the range of its strokes: then it may be virgin.
+bool StartsInside(const ScaledRecord& record, const Thresholds& thresholds) {
+  const auto [low, high] = std::ranges::minmax(record.excitation());
+  const double start = record.excitation().front();
+  return std::min(start - low, high - start) > thresholds.starts_inside * (high - low);
 }
 
 /// Returns what lies before the first turns of records that begin under a force, with a past that
@@ -95,6 +104,38 @@ bool LawIsAtBound(const FitResult& fit) {
                              [&](const char* name) { return fit.Find(name)->is_at_bound(); });
 }
 
+/// True if all swings of the records are as wide as the widest, but for the steps of an encoder,
+/// those to their ends no wider. Then a steady contact of Masing's law and one of Dahl's own run
+/// along one curve, each with a σ and a Tc of its own (models/steady_loop.h).
+bool HasOneAmplitude(std::span<const loop::RecordView> records, const ScaledRecords& data,
+                     const Thresholds& thresholds) {
+  double widest = 0.0;
+  double narrowest = std::numeric_limits<double>::infinity();
+  double longest_end = 0.0;
+  double step = 0.0;
+  for (const loop::RecordView& record : records) {
+    if (!data.is_forced()) {
+      step = std::max(step, loop::EncoderStep(record.displacement) / data.length);
+    }
+  }
+  for (const ScaledRecord& record : data.records) {
+    if (record.reversals.empty()) return false;
+    const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+      const double swing =
+          std::abs(record.excitation()[strokes[s].end] - record.excitation()[strokes[s].begin]);
+      if (s == 0 || s + 1 == strokes.size()) {
+        longest_end = std::max(longest_end, swing);
+      } else {
+        widest = std::max(widest, swing);
+        narrowest = std::min(narrowest, swing);
+      }
+    }
+  }
+  const double wider = (1 + thresholds.one_amplitude) * narrowest + 2 * step;
+  return widest <= wider && longest_end <= wider;
+}
+
 }  // namespace
 
 std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
@@ -107,7 +148,20 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   choice.alternative = models::FindFrictionModel(is_masing ? "dahl" : "mindlin-dahl");
   choice.law = is_masing ? models::DahlEquivalent(fit.law, amplitude)
                          : models::MasingEquivalent(fit.law, amplitude);
-  const FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
+  FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
+  // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
+  const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
+    return record.initial_state == InitialState::kSteady;
+  });
+  const bool is_open = options.initial_states.empty();
+  const bool is_one_curve = is_steady && HasOneAmplitude(records, data, options.thresholds);
+  if (is_one_curve) {
+    const auto starts_inside = [&](const ScaledRecord& record) {
+      return StartsInside(record, options.thresholds);
+    };
+    if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
+    others.initial_states = {InitialState::kVirgin};
+  }
   FitResult other;
   try {
     other = Fitter(others).Fit(records, Depth::kEstimate);
@@ -115,7 +169,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     return choice;  // too few samples for it
   }
   if (!other.converged || LawIsAtBound(other)) {
-    choice.decided = !LawIsAtBound(fit);
+    choice.decided = !is_one_curve;
     if (choice.decided) choice.preferred = fit.model;
     return choice;
   }
@@ -125,20 +179,22 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     const double rms = of.likelihood_rms / data.response_unit();
     return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());
   };
-  choice.law = other.law;
   double delta = criterion(other) - criterion(fit);
+  // If the laws are one curve, a virgin start counts only if it is better.
   const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
+  if (is_one_curve && (delta > 0 || is_undecided())) return choice;
+  choice.law = other.law;
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
   // need turns that are not recorded. That alone does not decide for it.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
-  const std::vector<SampleRange> past = is_for_dahl && options.initial_states.empty()
-                                            ? UnknownPast(data, fit)
-                                            : std::vector<SampleRange>{};
+  const std::vector<SampleRange> past =
+      is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
   if (!past.empty()) {
+    if (HasOneAmplitude(records, data, options.thresholds)) return choice;
     FitOptions same = options;
     StartFrom(fit, same);
     const auto without = FitWithout(past, records, std::move(same));
-    const auto other_without = FitWithout(past, records, others);
+    const auto other_without = FitWithout(past, records, std::move(others));
     if (!without || !other_without) return choice;
     delta = criterion(*other_without) - criterion(*without);
   }

@@ -11,8 +11,9 @@
 namespace mindahl::identification {
 
 /// Masing's law against Dahl's own, whichever of them was fitted, by AICc on the effective samples
-/// of the one that leaves less. The other is fitted from where its loop at the widest amplitude
-/// would be the same.
+/// of the one that leaves less. The other is fitted too where the record may distinguish them, from
+/// where its loop at the widest amplitude would be the same; of one amplitude it follows in closed
+/// form.
 /// @param data  the records, scaled
 /// @param fit   of them, from Depth::kErrors on
 /// @returns empty where the laws are one (α = 0), and where they are not compared

@@ -30,7 +30,7 @@ struct LawChoice {
   const models::FrictionModel* alternative = nullptr;
   models::BranchLaw law;  ///< its σ, α, Tc
   /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
-  /// Empty if the other could not be fitted.
+  /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
   std::optional<double> delta_aicc;
 
   [[nodiscard]] bool prefers_alternative() const { return decided && preferred == alternative; }

@@ -110,6 +110,9 @@ struct Thresholds {
   /// channels, is a closed cycle. A step of 300 samples a cycle is as long, and noise of one per
   /// cent.
   double one_cycle = 0.02;
+  /// [of the range] A record that starts nearer to the end of its strokes has turned there. A
+  /// virgin curve that is cut shorter shows no difference from a steady loop.
+  double starts_inside = 0.1;
   /// [of X] A contact unloaded this near to the first sample was unloaded before it. The end of a
   /// record counts as a turning point within the same distance.
   double starts_unloaded = 0.02;
@@ -120,6 +123,9 @@ struct Thresholds {
   /// factor is given up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one
   /// parameter by which states differ, however few samples the whole record adds.
   double hopeless = 4.0;
+  /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
+  /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.
+  double one_amplitude = 0.01;
   /// [R²] A loop that explains less of the force is not seen, and no parameter is given. The rest
   /// of the force is three times the loop: if a tenth of it is regular, that is a third of the
   /// loop.
