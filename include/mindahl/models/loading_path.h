@@ -124,7 +124,7 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
 /// A turn of the motion, which may lie between two samples.
 struct Turn {
   std::size_t next = 0;       ///< the first sample after it
-  double displacement = 0.0;  ///< [m] where the motion turns
+  double displacement = 0.0;  ///< [m]
 };
 
 /// Makes the same of a motion whose turns are known, into a path whose memory is used again.
