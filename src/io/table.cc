@@ -355,7 +355,7 @@ TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& w
       table_(layout.header),
       is_wanted_(wanted.empty() ? layout.holds_numbers
                                 : std::vector<bool>(layout.header.columns.size())),
-      // Of the columns of numbers the first.
+      // A row of text has its text in the first column of numbers.
       text_column_(static_cast<std::size_t>(std::ranges::find(layout.mostly_numbers, true) -
                                             layout.mostly_numbers.begin())),
       line_(layout.data_line - 1) {

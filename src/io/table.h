@@ -96,10 +96,11 @@ class TableReader {
   Layout layout_;
   CsvTable table_;
   std::vector<bool> is_wanted_;  // of each column
-  std::size_t text_column_;      // that has a text in a row of text
+  std::size_t text_column_;      // where a row of text has its text
   std::size_t line_;
   char front_ = '\0';  // of the last row
-  // Of the text since the last row of numbers: the fault and line of what is no header.
+  // They describe the text since the last row of numbers; fault and line are those of the first
+  // text that is not a header.
   bool repeats_header_ = false;
   std::string text_fault_;
   std::size_t text_line_ = 0;

@@ -87,7 +87,7 @@ inline constexpr std::string_view kLesserWords =
     "setpoint|set|goal|demand|command|cmd|commanded|target|desired|reference|ref|control|soll|"
     "sollwert|consigne|consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
 
-// What leaves numbers without a unit.
+// These words say that a quantity has no unit.
 inline constexpr std::string_view kRatios =
     "normalized|normalised|normalisiert|normiert|percent|prozent|pct|ratio";
 

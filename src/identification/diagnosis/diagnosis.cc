@@ -143,7 +143,9 @@ std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
   for (const std::size_t p : problem.parameters.with_prior()) {
     const Parameter& parameter = problem.parameters[p];
     const double uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
-    // Of the fit, which has the prior: (own − prior)/√(error² + uncertainty²) of the records' own.
+    // The fit includes the prior, whose variance is u²; its own error is e. So |θ − prior|/√(u² −
+    // e²) is the distance of the records' own estimate over the standard deviation of that
+    // distance.
     const double left = uncertainty * uncertainty - std::pow(fitted.ErrorOfTheta(p), 2);
     const double distance = std::abs(fitted.solution().theta[p] - parameter.prior_theta) /
                             (left > 0 ? std::sqrt(left) : uncertainty);

@@ -23,16 +23,15 @@ struct FiveSamples {
 
 /// Returns where the lines of both strokes meet; nothing where the velocity changes elsewhere than
 /// at the turn.
-/// @param before  the last sample before the turn
+/// @param before  the last sample before the turn, 1 or 2
 std::optional<double> SharpTurn(const FiveSamples& about, std::size_t before) {
   constexpr double kStraight = 0.1;  // change of the velocity beside the turn, over that at it
   const std::size_t after = before + 1;
-  if (before < 1 || after > 3) return std::nullopt;
   const double rising = about.Velocity(before - 1);
   const double falling = about.Velocity(after);
-  double beside = 0.0;
-  if (before > 1) beside = std::abs(rising - about.Velocity(before - 2));
-  if (after < 3) beside = std::max(beside, std::abs(falling - about.Velocity(after + 1)));
+  // The stroke of three samples has a second step.
+  const double beside = before > 1 ? std::abs(rising - about.Velocity(before - 2))
+                                   : std::abs(falling - about.Velocity(after + 1));
   if (!(beside < kStraight * std::abs(rising - falling))) return std::nullopt;
   const double way = about.x[after] - about.x[before];
   const double since = (way - falling * (about.t[after] - about.t[before])) / (rising - falling);

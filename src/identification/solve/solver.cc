@@ -14,6 +14,9 @@
 namespace mindahl::identification {
 namespace {
 
+/// A full step is the last one if it can lower the cost by at most this fraction.
+constexpr double kLastStep = 1e-8;
+
 /// ceres::TinySolver with what the searches of one start share.
 ///
 /// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
@@ -46,9 +49,9 @@ class TinySearch {
   /// True if the last step gained next to nothing of what was left to gain: it was damped too much.
   [[nodiscard]] bool is_damped() const {
     return tiny_.summary.status == Tiny::COST_CHANGE_TOO_SMALL &&
-           compressed_.Explained() > options_.last_step * at_.cost;
+           compressed_.Explained() > kLastStep * at_.cost;
   }
-  /// True if the residual was evaluated, or predicted, where the run ended last.
+  /// True if the residual was evaluated where the run ended last.
   [[nodiscard]] bool IsEvaluated() const { return at_.u == trial_.u; }
 
  private:
@@ -146,8 +149,6 @@ double TinySearch::Try(const Eigen::VectorXd& x) {
   trial_.is_linearised = !is_last_;
   if (!is_last_) {
     trial_.cost = residual_.Linearise(u);
-  } else if (options_.predicts_last) {
-    trial_.cost = (compressed_.residual + compressed_.jacobian * (trial_.u - at_.u)).squaredNorm();
   } else {
     trial_.cost = residual_.Evaluate(u);
     // A last step that does not lower the cost could have gained next to nothing: it is refused by
@@ -184,7 +185,7 @@ void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> ro
   CountAccepted();
   const double left = compressed_.Explained();
   if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
-  is_last_ = left <= options_.last_step * at_.cost && at_.cost > floor_;
+  is_last_ = left <= kLastStep * at_.cost && at_.cost > floor_;
   rows = compressed_.residual;
   columns = compressed_.jacobian;
 }

@@ -19,10 +19,6 @@ struct SolverOptions {
   /// … or |Δu| < parameter_tolerance · (|u| + parameter_tolerance), …
   double parameter_tolerance = 1e-13;
   int max_iterations = 500;
-  /// Accepts a full step as the last one if it can lower the cost by at most this fraction.
-  double last_step = 1e-8;
-  /// Accepts the last step without evaluating the cost there.
-  bool predicts_last = false;
   /// Leaves out the second opinion of ceres::Solve: the result is only a start.
   bool is_rough = false;
 };
