@@ -23,7 +23,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
     // Further coefficients of a group stay with the one that leads it, an exponent with its factor.
     const Term& term = *parameters[p].term;
     const bool leads = !term.group.empty() || term.start != 0;
-    const bool is_on_demand = term.presence == Presence::kOnDemand && leads && !term.is_linear;
+    const bool is_on_demand = term.presence == Presence::kOnDemand && leads;
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
   for (const std::size_t p : terms) {
