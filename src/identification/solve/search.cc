@@ -55,16 +55,18 @@ void SearchOnce(std::span<const double> theta, const FitOptions& options, Solver
 /// Returns points next to a solution from which there may be a way to a lower minimum.
 std::vector<std::vector<double>> Neighbours(const Problem& problem,
                                             const std::vector<double>& solution) {
-  constexpr double kSharp = 0.1;  // α
+  constexpr double kSharp = 0.1;       // α
+  constexpr double kSharpest = 0.003;  // α
   constexpr double kAway = 0.1;
+  constexpr double kUnreached = 0.05;  // of ln Tc above the largest force
   const Parameters& parameters = problem.parameters;
   std::vector<std::vector<double>> neighbours;
   // Other parts of the compliance in the rig: a sharp knee behind a soft rig resembles a round one.
   const Parameter& rig = parameters[kRig];
   const bool rig_is_open = !rig.absent && !rig.fixed && !rig.has_prior();
   const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
-  for (const double share : {0.2, 0.5, 0.8}) {
-    for (const double shape : {0.02, 1.0 / 3}) {
+  for (const double share : {0.2, 0.5, 0.8, 0.99}) {
+    for (const double shape : {0.02, 1.0}) {
       if (!rig_is_open) continue;
       std::vector<double>& theta = neighbours.emplace_back(solution);
       theta[kStiffness] = -std::log((1 - share) * compliance);
@@ -87,6 +89,12 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
     has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
   }
   if (has_moved) neighbours.push_back(std::move(at_first));
+  // Slip that begins just before the ends, of a loop that does not slip.
+  if (!parameters[kShape].fixed && solution[kSlipForce] > kUnreached) {
+    std::vector<double>& sharp = neighbours.emplace_back(solution);
+    sharp[kShape] = kSharpest;
+    sharp[kSlipForce] = 0.0;
+  }
   // Slip that begins sooner or later, and a smoother law: where slip begins so sharply the sum of
   // squares has a minimum between any two samples.
   if (parameters[kShape].fixed || !(solution[kShape] < kSharp)) return neighbours;
@@ -115,8 +123,14 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver) {
   Solution& best = candidate.solution;
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
-  for (const std::vector<double>& theta : Neighbours(candidate.problem, best.theta)) {
-    SearchOnce(theta, options, solver, best);
+  constexpr int kMostRounds = 4;
+  constexpr double kLower = 1 - 1e-6;
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {
+    last = kLower * best.sum_of_squares;
+    for (const std::vector<double>& theta : Neighbours(candidate.problem, best.theta)) {
+      SearchOnce(theta, options, solver, best);
+    }
   }
 }
 

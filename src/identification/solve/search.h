@@ -49,10 +49,11 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
 /// Solves from each starting point and keeps the best solution.
 void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 
-/// Solves once more from next to the best solution where there may be lower minima, and keeps the
-/// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
-/// where the rig takes another part of the compliance, and a noisy virgin loop one that had been
-/// loaded before. Where a start is given it is the only one.
+/// Solves again from next to the best solution where there may be lower minima, and goes on from
+/// the best as long as one is lower: a law with a sharp knee has a minimum between any two samples,
+/// a loop that hardly slips one where it just slips, one with a rig others where the rig takes
+/// another part of the compliance, and a noisy virgin loop one that had been loaded before. Where a
+/// start is given it is the only one.
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 }  // namespace mindahl::identification
