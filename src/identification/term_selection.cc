@@ -342,7 +342,6 @@ const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
 /// @param starts  of these, beside its solution; null: from starts of its own
 Selection::Model Selection::FitWith(const TermChoice& choice,
                                     const std::map<std::string, double>* starts) {
-  constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
   Model model{.options = choice.AddedTo(base_.options), .fit = {}};
   FitOptions options = model.options;
   if (starts != nullptr) {
@@ -351,7 +350,6 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
     for (const auto& [name, value] : *starts) options.start[name] = value;
   }
   options.preparation.force_sense = base_.fit.force_sense;
-  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
   model.fit = FitTo(options, Depth::kEstimate);
   return model;
 }
@@ -359,7 +357,9 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
 /// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
 /// loop.
 FitResult Selection::FitTo(FitOptions options, Depth depth) {
+  constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
   options.preparation.drawn = drawn_;
+  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
   try {
     ++fits_;
     return Fitter(options).Fit(records_, depth);

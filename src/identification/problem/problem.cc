@@ -302,8 +302,9 @@ void Response::ScaleBySlipForce(std::size_t r, std::span<const double> theta,
     return;
   }
   // (v/v₀)^m along the motion, which has no memory.
-  const Eigen::ArrayXd dragged = ArrayOf(record.velocity) * (-ArrayOf(record.log_speed)).exp() *
-                                 (value(TermId::kDragExponent) * slip.log_speed).exp();
+  const Eigen::ArrayXd dragged =
+      ArrayOf(record.velocity) *
+      (value(TermId::kDragExponent) * slip.log_speed - ArrayOf(record.log_speed)).exp();
   const double drag = value(TermId::kDragFraction);
   set(TermId::kDragFraction, dragged - t);
   set(TermId::kDragExponent, drag * dragged * slip.log_speed);
