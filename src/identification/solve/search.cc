@@ -88,10 +88,10 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
     at_first[origin] = problem.data->records[r].excitation().front();
     has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
   }
-  if (has_moved) neighbours.push_back(std::move(at_first));
+  if (has_moved) neighbours.push_back(at_first);
   // Slip that begins just before the ends, of a loop that does not slip.
   if (!parameters[kShape].fixed && solution[kSlipForce] > kUnreached) {
-    std::vector<double>& sharp = neighbours.emplace_back(solution);
+    std::vector<double>& sharp = neighbours.emplace_back(std::move(at_first));
     sharp[kShape] = kSharpest;
     sharp[kSlipForce] = 0.0;
   }
