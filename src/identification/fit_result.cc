@@ -21,9 +21,9 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
   return found == parameters.end() ? nullptr : &*found;
 }
 
-const Finding* FitResult::FindFinding(FindingCode code) const {
+const Finding* FitResult::FindFinding(FindingCode code, std::string_view kind) const {
   const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
-    return std::string_view(finding.code) == std::string_view(code);
+    return finding.code == std::string_view(code) && (kind.empty() || finding.kind == kind);
   });
   return found == findings.end() ? nullptr : &*found;
 }

@@ -120,14 +120,15 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   result.solver = solution.report;
   result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {
-    result.findings.push_back({.code = "fit_failed"});
+    result.findings.push_back(
+        {.code = "not_converged", .severity = Severity::kFailure, .kind = "failed"});
     return result;
   }
   result.converged = solution.converged && solved.is_settled;
   if (!solved.is_settled) {
     result.solver.termination = "NO_CONVERGENCE";
     result.solver.message = "The weights of the samples did not settle.";
-    result.findings.push_back({.code = "weights_not_settled"});
+    result.findings.push_back({.code = "not_converged", .kind = "weights"});
   }
   if (!data.is_forced()) result.force_noise = solved.noise.force * data.force;
   result.outliers = solved.noise.outliers;

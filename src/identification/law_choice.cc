@@ -81,7 +81,7 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
     others.fixed["alpha"] = fit.law.shape_exponent;
   }
   // A fit that determines only a combination of parameters gives no start for the other law.
-  if (fit.FindFinding("undetermined_combination") != nullptr) others.start.clear();
+  if (fit.FindFinding("not_identifiable", "combination") != nullptr) others.start.clear();
   return others;
 }
 

@@ -14,6 +14,7 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
+#include "identification/solved_fit.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
@@ -191,9 +192,7 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
       Include(*estimate, {.lower = value, .upper = value});
     }
   }
-  for (Finding& finding : FindWideIntervals(fit, thresholds)) {
-    if (fit.FindFinding(finding.code) == nullptr) fit.findings.push_back(std::move(finding));
-  }
+  Append(fit.findings, FindWideIntervals(fit, thresholds));
   Judge(fit.parameters, fit.findings);
 }
 

@@ -51,9 +51,8 @@ std::string CauseText(const identification::Cause& cause) {
 
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
-  constexpr auto kSaid =
-      std::to_array<std::string_view>({"law_undecided", "other_law_fits_better", "model_inadequate",
-                                       "loop_not_seen", "no_closed_cycle", "fit_failed"});
+  constexpr auto kSaid = std::to_array<std::string_view>(
+      {"other_law", "model_inadequate", "loop_not_seen", "no_closed_cycle"});
   return std::ranges::find(kSaid, code) != kSaid.end();
 }
 

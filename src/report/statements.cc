@@ -92,40 +92,36 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     // about the record
     {"reversals_uncertain",
      "{count} reversals, under a gate of {gate:excitation} that is not certain: --reversal-gate"},
-    {"glitches_left_out", "measurement faults are left out"},
     {"no_closed_cycle",
      "no cycle ends where it began: record one and a half or more of one amplitude"},
     {"rows_missing",
      "no rows for {gap:s} from {from:s} on, and what turned there is not seen: --select "
      "time=LO:HI"},
-    {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},
-    {"load_not_followed",
+    {"load_varies.followed", "the normal load varies by ±{variation%}, which the law follows"},
+    {"load_varies",
      "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
      "one load"},
-    {"load_not_proportional",
+    {"load_varies.not_proportional",
      "the half gap over the load goes from {least:-} to {most:-}: Tc is not in proportion to these "
      "loads; mindahl batch fits the files apart"},
     // about the parameters
-    {"undetermined_parameter", "the record does not depend on it"},
-    {"undetermined_combination",
+    {"not_identifiable", "the record does not depend on it"},
+    {"not_identifiable.combination",
      "only a combination of {parameters} is determined; fix one, or record another amplitude"},
-    {"sigma_not_identifiable",
-     "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide{remedy}"},
-    {"alpha_not_identifiable.wide",
-     "{confidence} interval {lower:-} … {upper:-} is too wide{remedy}"},
-    {"alpha_not_identifiable", "only its ratio to the slip force is determined; fix one of them"},
-    {"slip_force_not_identifiable",
-     "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
-    {"asymmetry_not_identifiable", "the loop stays below slip"},
-    {"slip_force_bounded_below",
+    {"not_identifiable.wide",
+     "{confidence} interval {lower:parameter} … {upper:parameter} is too wide{remedy}"},
+    {"not_identifiable.with_slip_force",
+     "only its ratio to the slip force is determined; fix one of them"},
+    {"not_identifiable.below_slip", "the loop stays below slip"},
+    {"bounded_below",
      "the force does not level off: raise the amplitude until it does (mindahl plan says how far)"},
-    {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
+    {"bounded_below.slides", "the force keeps changing while the contact slides"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
      "the force reads {limit:force} in {share%} of the samples, to the last digit: the sensor is "
      "at its "
      "limit, and Tc is no less"},
-    {"few_places",
+    {"not_identifiable.few_places",
      "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
      "often"},
     {"unknown_past",
@@ -137,19 +133,23 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses
-    {"law_undecided", "the other law fits as well"},
-    {"other_law_fits_better", "the other law fits better"},
+    {"other_law", "the other law fits as well"},
+    {"other_law.better", "the other law fits better"},
     {"loop_not_seen",
      "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
      "columns?"},
     {"model_inadequate", "the law does not describe the record"},
     // about the search
-    {"weights_not_settled", "the weights of the samples did not settle; try another --loss"},
-    {"fit_failed", "{message}"},
+    {"not_converged.weights", "the weights of the samples did not settle; try another --loss"},
+    {"not_converged", "{message}"},
 });
 
 /// Returns the unit of a placeholder: one of the report's, or itself.
-std::string_view UnitOf(std::string_view name, const Units& units) {
+std::string_view UnitOf(std::string_view name, const Finding& finding, const Units& units) {
+  if (name == "parameter") {
+    const std::string& of = finding.parameters.front();
+    name = of == "sigma" ? "stiffness" : of == "slip_force" ? "force" : "-";
+  }
   if (name == "force") return units.force;
   if (name == "stiffness") return units.stiffness;
   return name == "excitation" ? units.excitation : name;
@@ -170,7 +170,7 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
   const std::string_view name = place.substr(0, is_percent ? place.size() - 1 : colon);
   const double number = finding.Number(name).value_or(std::numeric_limits<double>::quiet_NaN());
   if (colon != std::string_view::npos) {
-    return Quantity(number, UnitOf(place.substr(colon + 1), units), 3);
+    return Quantity(number, UnitOf(place.substr(colon + 1), finding, units), 3);
   }
   if (is_percent) return PercentText(std::max(number, 0.0));
   return number == std::round(number) ? fmt::format("{:.0f}", number)

@@ -105,9 +105,8 @@ bool WithdrawPreference(FitResult& fit) {
   if (!fit.law_choice || !fit.law_choice->prefers_alternative()) return false;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
-  std::erase_if(fit.findings, [](const identification::Finding& finding) {
-    return finding.code == "other_law_fits_better";
-  });
+  std::erase_if(fit.findings,
+                [](const identification::Finding& finding) { return finding.code == "other_law"; });
   return true;
 }
 
@@ -183,8 +182,9 @@ std::optional<identification::Finding> FindDisproportion(const FitResult& fit) {
   }
   const auto [least, most] = std::ranges::minmax(ratios);
   if (!(most > (1 + kLeastSpread) * least)) return {};
-  return identification::Finding{.code = "load_not_proportional",
-                                 .numbers = {{"least", least}, {"most", most}}};
+  return identification::Finding{.code = "load_varies",
+                                 .numbers = {{"least", least}, {"most", most}},
+                                 .kind = "not_proportional"};
 }
 
 /// Adds a term to the options, and what a user does for it to the step.

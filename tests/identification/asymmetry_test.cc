@@ -109,7 +109,7 @@ TEST(Asymmetry, OfACycledContactThatNeverSlipsAsAWholeIsNotIdentified) {
     const Record loop = WithForceNoise(From(LoopOf(0.25, lambda, 3.25), 200), 0.05, generator);
     const FitResult fit = FitOne(loop, options);
     return std::pair(fit.Find("asymmetry")->identifiability,
-                     fit.FindFinding("asymmetry_not_identifiable") != nullptr);
+                     fit.FindFinding("not_identifiable", "below_slip") != nullptr);
   };
   EXPECT_EQ(verdict(0.8), std::pair(Identifiability::kNotIdentifiable, true));
   EXPECT_EQ(verdict(1.3), std::pair(Identifiability::kIdentifiable, false));

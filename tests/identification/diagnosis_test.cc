@@ -18,11 +18,11 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   result.parameters[2].upper95.reset();
   auto findings = FindOpenSlipForce(result);
   ASSERT_EQ(findings.size(), 2U);
-  EXPECT_EQ(findings[0].code, "slip_force_bounded_below");
+  EXPECT_EQ(findings[0].code, "bounded_below");
   EXPECT_EQ(findings[0].Number("peak_force"), 2.0);
   EXPECT_EQ(findings[0].Number("amplitude"), 1e-6);
   EXPECT_THAT(findings[0].parameters, ElementsAre("slip_force"));
-  EXPECT_EQ(findings[1].code, "alpha_not_identifiable");
+  EXPECT_EQ(findings[1].code, "not_identifiable");
   EXPECT_EQ(findings[1].kind, "with_slip_force");
   EXPECT_THAT(findings[1].parameters, ElementsAre("alpha"));
   result.records[0].facts.closed = true;
@@ -67,15 +67,6 @@ TEST(FindInRecords, UncertainReversalsHaveTheirCountAndGate) {
   EXPECT_EQ(findings[0].severity, Severity::kWarning);
   EXPECT_EQ(findings[0].Number("count"), 19);
   EXPECT_EQ(findings[0].Number("gate"), 8e-4);
-}
-
-TEST(FindInRecords, GlitchesAreANote) {
-  RecordFit record = Flawless();
-  record.glitches.total = 7;
-  const std::vector<Finding> findings = FindIn(record);
-  ASSERT_THAT(Codes(findings), ElementsAre("glitches_left_out"));
-  EXPECT_EQ(findings[0].severity, Severity::kNote);
-  EXPECT_EQ(findings[0].Number("count"), 7);
 }
 
 TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {

@@ -134,7 +134,7 @@ TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
   for (std::size_t i = 0; i < sine.size(); ++i)
     force.push_back(i % 40 <= 10 || i % 40 > 30 ? 1 : -1);
   const FitResult fit = FitOne(MakeRecord(sine, force), {.model = &Model("jenkins")});
-  const Finding* finding = fit.FindFinding("undetermined_parameter");
+  const Finding* finding = fit.FindFinding("not_identifiable", "without_effect");
   ASSERT_NE(finding, nullptr);
   EXPECT_THAT(finding->parameters, ::testing::ElementsAre("sigma"));
 }

@@ -98,8 +98,8 @@ TEST(Fitter, LeavesNothingOfAFitBeforeOneThatFails) {
     ASSERT_TRUE(used.Fit(RecordView(good), depth).converged);
     const FitResult& failed = used.Fit(RecordView(wrong), depth);
     EXPECT_FALSE(failed.converged);
-    ASSERT_NE(failed.FindFinding("fit_failed"), nullptr);
-    EXPECT_EQ(failed.FindFinding("fit_failed")->severity, Severity::kFailure);
+    ASSERT_NE(failed.FindFinding("not_converged"), nullptr);
+    EXPECT_EQ(failed.FindFinding("not_converged")->severity, Severity::kFailure);
     ExpectSame(failed, fresh.Fit(RecordView(wrong), depth));
   }
 }

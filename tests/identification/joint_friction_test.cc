@@ -55,7 +55,7 @@ TEST(JointFriction, IsRecoveredUnderATorqueThatChangesItsSign) {
       EXPECT_TRUE(testing::Recovers(fit, drive.law, kExact)) << alpha << ' ' << asymmetry;
       EXPECT_NEAR(fit.Find("asymmetry")->value, asymmetry, kExact);
       EXPECT_EQ(fit.Find("asymmetry")->identifiability, Identifiability::kIdentifiable);
-      EXPECT_NE(fit.FindFinding("load_followed"), nullptr);
+      EXPECT_NE(fit.FindFinding("load_varies", "followed"), nullptr);
     }
   }
 }
@@ -71,7 +71,7 @@ TEST(JointFriction, OfASettledJointDistinguishesTheAsymmetryFromTheOffset) {
   EXPECT_TRUE(testing::Recovers(fit, drive.law, 1e-9));
   EXPECT_NEAR(fit.Find("asymmetry")->value, drive.asymmetry, 1e-9);
   EXPECT_NEAR(fit.Find("force_offset")->value, 1.5, 1e-8);
-  EXPECT_EQ(fit.FindFinding("asymmetry_not_identifiable"), nullptr);
+  EXPECT_EQ(fit.FindFinding("not_identifiable", "below_slip"), nullptr);
 }
 
 TEST(JointFriction, OfATorqueOfTheOtherSignHasTheOtherAsymmetry) {

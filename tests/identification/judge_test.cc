@@ -23,12 +23,8 @@ struct Verdict {
 
 /// What each finding says of the parameters that it names, as docs/contract.md has it.
 constexpr auto kVerdicts = std::to_array<Verdict>({
-    {"undetermined_parameter", Identifiability::kNotIdentifiable},
-    {"undetermined_combination", Identifiability::kNotIdentifiable},
-    {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
-    {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
-    {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-    {"slip_force_bounded_below", Identifiability::kBoundedBelow},
+    {"not_identifiable", Identifiability::kNotIdentifiable},
+    {"bounded_below", Identifiability::kBoundedBelow},
     {"loop_not_seen", Identifiability::kNotIdentifiable},
     {"reversals_uncertain", Identifiability::kIdentifiable},
 });
@@ -76,7 +72,7 @@ TEST(Judge, FindingWithoutParametersChangesNone) {
     EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = code}}), Identifiability::kIdentifiable)
         << code.row().code;
   }
-  EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = "weights_not_settled"}}),
+  EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = "not_converged"}}),
             Identifiability::kIdentifiable);
 }
 
@@ -84,7 +80,7 @@ TEST(Judge, FixedParameterIsIdentifiableWhateverTheFindings) {
   ParameterEstimate held = Known("alpha");
   held.status = ParameterStatus::kFixed;
   held.standard_error = held.lower95 = held.upper95 = std::nullopt;
-  EXPECT_EQ(JudgedWith(held, {{.code = "undetermined_parameter", .parameters = {"alpha"}}}),
+  EXPECT_EQ(JudgedWith(held, {{.code = "not_identifiable", .parameters = {"alpha"}}}),
             Identifiability::kIdentifiable);
 }
 
@@ -110,9 +106,8 @@ TEST(Judge, IntervalThatIncludesTheDiscrepancyIsEffective) {
   ParameterEstimate estimate = Known("slip_force");
   estimate.includes_discrepancy = true;
   EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kEffective);
-  EXPECT_EQ(
-      JudgedWith(estimate, {{.code = "slip_force_not_identifiable", .parameters = {"slip_force"}}}),
-      Identifiability::kNotIdentifiable)
+  EXPECT_EQ(JudgedWith(estimate, {{.code = "not_identifiable", .parameters = {"slip_force"}}}),
+            Identifiability::kNotIdentifiable)
       << "a wide one is no answer";
   estimate.upper95.reset();
   EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kBoundedBelow);

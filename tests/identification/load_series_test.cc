@@ -175,8 +175,8 @@ TEST(VaryingLoad, IsFollowedToTheLastDigits) {
         EXPECT_TRUE(testing::Recovers(fit, LawOf(motion), testing::kNoiseFree))
             << "swing " << swing << ", multiple " << multiple << ", lambda " << lambda;
         EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
-        ASSERT_NE(fit.FindFinding("load_followed"), nullptr);
-        EXPECT_NEAR(*fit.FindFinding("load_followed")->Number("variation"), swing, 1e-9);
+        ASSERT_NE(fit.FindFinding("load_varies", "followed"), nullptr);
+        EXPECT_NEAR(*fit.FindFinding("load_varies", "followed")->Number("variation"), swing, 1e-9);
       }
     }
   }
@@ -218,8 +218,8 @@ TEST(VaryingLoad, IsReportedIfTheLawDoesNotModelIt) {
   for (const char* model : {"mindlin", "dahl"}) {
     const FitResult sprung =
         testing::FitOne(record, {.model = &Model(model), .terms = {"rig_stiffness"}});
-    EXPECT_NE(sprung.FindFinding("load_not_followed"), nullptr) << model;
-    EXPECT_EQ(sprung.FindFinding("load_followed"), nullptr) << model;
+    EXPECT_NE(sprung.FindFinding("load_varies", "not_followed"), nullptr) << model;
+    EXPECT_EQ(sprung.FindFinding("load_varies", "followed"), nullptr) << model;
   }
 }
 

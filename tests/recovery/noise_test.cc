@@ -153,7 +153,7 @@ TEST(Noise, GearboxThatNeverSlipsHasNoIdentifiableSlipForce) {
   // A limit at most, and none where the law does not describe the record.
   EXPECT_GE(fit.Find("slip_force")->identifiability, Identifiability::kBoundedBelow);
   EXPECT_NE(fit.Find("alpha")->identifiability, Identifiability::kIdentifiable);
-  EXPECT_TRUE(IsWarnedOf(fit, "slip_force_bounded_below") || IsWarnedOf(fit, "model_inadequate"));
+  EXPECT_TRUE(IsWarnedOf(fit, "bounded_below") || IsWarnedOf(fit, "model_inadequate"));
 }
 
 TEST(Noise, CoarseGrossSlipLeavesTheStiffnessOpenAbove) {

@@ -40,7 +40,7 @@ TEST(Verdict, IsSilentOnlyWhereTheTruthIsFarOffWithoutAWarning) {
   EXPECT_EQ(OutcomeOf(FitOf(105.0, 6.0)), Outcome::kRight);
   FitResult fit = FitOf(105.0, 1.0);
   EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent);
-  fit.findings.push_back({.code = "glitches_left_out", .severity = Severity::kNote});
+  fit.findings.push_back({.code = "no_closed_cycle", .severity = Severity::kNote});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent) << "a note is no warning";
   fit.findings.push_back({.code = "reversals_uncertain"});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kWarned);
@@ -95,7 +95,7 @@ TEST(Verdict, CountsIntervalsAndThoseThatMiss) {
 TEST(Verdict, AlarmsAtMoreThanWhatARecordLeavesOpen) {
   FitResult fit = FitOf(100.0, 1.0);
   EXPECT_FALSE(CautionOf(fit).alarms);
-  fit.findings.push_back({.code = "slip_force_bounded_below"});
+  fit.findings.push_back({.code = "bounded_below"});
   EXPECT_TRUE(CautionOf(fit).warns);
   EXPECT_FALSE(CautionOf(fit).alarms);
   fit.findings.push_back({.code = "reversals_uncertain"});

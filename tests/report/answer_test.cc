@@ -126,7 +126,8 @@ TEST(Answer, GivesAReasonInPlaceOfANumberOnce) {
   for (auto& estimate : input.fit.parameters) {
     estimate.identifiability = Identifiability::kNotIdentifiable;
   }
-  input.fit.findings = {{.code = "undetermined_combination", .parameters = {"sigma", "alpha"}}};
+  input.fit.findings = {
+      {.code = "not_identifiable", .parameters = {"sigma", "alpha"}, .kind = "combination"}};
   const std::string text = Answer(input);
   EXPECT_THAT(LineOf(input, "stiffness"), HasSubstr("σ not determined: only a combination"));
   EXPECT_THAT(LineOf(input, "shape"), StartsWith("α not determined"));
@@ -140,7 +141,7 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
   auto& slip_force = input.fit.parameters[2];
   slip_force.identifiability = Identifiability::kBoundedBelow;
   slip_force.upper95.reset();
-  input.fit.findings = {{.code = "slip_force_bounded_below", .parameters = {"slip_force"}}};
+  input.fit.findings = {{.code = "bounded_below", .parameters = {"slip_force"}}};
   EXPECT_THAT(LineOf(input, "friction"),
               StartsWith("μ > 0.784, Tc > 39.2 N: the force does not level off"));
   input.fit.findings.front().kind = "slides";
@@ -322,7 +323,10 @@ TEST(Answer, SaysEveryWarningOnce) {
   ReportInput input = MadeInput();
   input.fit.findings = {
       {.code = "reversals_uncertain", .numbers = {{"count", 7.0}, {"gate", 1e-7}}},
-      {.code = "load_followed", .numbers = {{"variation", 0.1}}}};
+      {.code = "load_varies",
+       .severity = identification::Severity::kNote,
+       .numbers = {{"variation", 0.1}},
+       .kind = "followed"}};
   EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals, under a gate of 100 nm"));
   EXPECT_THAT(Answer(input), Not(HasSubstr("which the law follows")));
   EXPECT_THAT(Details(input), HasSubstr("which the law follows"));
@@ -338,9 +342,10 @@ TEST(Answer, SaysWhatWasAssumedOfTheFile) {
 }
 
 TEST(Sentence, AsksForSamplesOnlyWhereNoiseIsAllThatIsLeft) {
-  const identification::Finding wide{.code = "sigma_not_identifiable",
+  const identification::Finding wide{.code = "not_identifiable",
                                      .parameters = {"sigma"},
-                                     .numbers = {{"lower", 1e6}, {"upper", 1e9}}};
+                                     .numbers = {{"lower", 1e6}, {"upper", 1e9}},
+                                     .kind = "wide"};
   EXPECT_EQ(Sentence(wide, MadeInput().fit),
             "95 % interval 1 N/µm … 1 N/nm is too wide; more samples or less noise");
   EXPECT_EQ(Sentence(wide, Doubtful().fit), "95 % interval 1 N/µm … 1 N/nm is too wide");

@@ -20,7 +20,7 @@ TEST(Json, OfAFitThatFailedHasNoNumberOfIt) {
   EXPECT_THAT(document["contact"], IsEmpty());
   EXPECT_TRUE(document["residuals"]["rms"].is_null());
   EXPECT_TRUE(document["adequacy"]["verdict"].is_null());
-  EXPECT_EQ(document["warnings"][0]["code"], "fit_failed");
+  EXPECT_EQ(document["warnings"][0]["code"], "not_converged");
 }
 
 TEST(Json, GivesNoValueWhereTheSearchStoppedAtItsOwnLimit) {

@@ -133,7 +133,8 @@ inline report::ReportInput FailedInput() {
   input.fit.residuals = {};
   input.fit.records[0].residual.clear();
   input.fit.records[0].fitted_force.clear();
-  input.fit.findings = {{.code = "fit_failed", .severity = identification::Severity::kFailure}};
+  input.fit.findings = {
+      {.code = "not_converged", .severity = identification::Severity::kFailure, .kind = "failed"}};
   return input;
 }
 

@@ -100,7 +100,7 @@ TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   const std::vector<models::BranchLaw> laws = {
       {3e7, 1.0 / 3, 10.0}, {3.8e7, 1.0 / 3, 16.5}, {4.8e7, 1.0 / 3, 27.5}};
   const report::Report made = FitLoops(laws, request);
-  const identification::Finding* found = made.fit.FindFinding("load_not_proportional");
+  const identification::Finding* found = made.fit.FindFinding("load_varies", "not_proportional");
   ASSERT_NE(found, nullptr);
   EXPECT_NEAR(*found->Number("least"), 0.1375, 0.003);
   EXPECT_NEAR(*found->Number("most"), 0.2, 0.004);
@@ -184,7 +184,7 @@ TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
   const Record record = UnderARampingLoad(20, generator);
   const report::Report report = ReportOf(record);
   EXPECT_EQ(report.fit.normal_load, 100.0);
-  EXPECT_EQ(report.fit.FindFinding("load_followed"), nullptr);
+  EXPECT_EQ(report.fit.FindFinding("load_varies", "followed"), nullptr);
   EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.005);
   // The ramp ends after three cycles, a turn is a quarter past each half, and the second counts.
   EXPECT_EQ(report.records.front().record.size(), record.size() - (3 * kCycle + 3 * kCycle / 4));

@@ -23,14 +23,8 @@ using identification::Severity;
 namespace {
 
 /// Findings that only say what a record leaves open, which a clean one may.
-constexpr std::array<std::string_view, 8> kLeftOpen = {"slip_force_bounded_below",
-                                                       "alpha_not_identifiable",
-                                                       "sigma_not_identifiable",
-                                                       "slip_force_not_identifiable",
-                                                       "undetermined_parameter",
-                                                       "undetermined_combination",
-                                                       "unknown_past",
-                                                       "few_places"};
+constexpr std::array<std::string_view, 3> kLeftOpen = {"bounded_below", "not_identifiable",
+                                                       "unknown_past"};
 
 double Distance(double value, const Range& truth) {
   return std::max({truth.lowest - value, value - truth.highest, 0.0});

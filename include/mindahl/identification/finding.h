@@ -42,35 +42,24 @@ inline constexpr auto kFindings = [] {
   return std::to_array<FindingRow>({
       // about the record
       {.code = "reversals_uncertain"},
-      {.code = "glitches_left_out", .severity = kNote},
       {.code = "no_closed_cycle", .severity = kNote},
       {.code = "rows_missing"},
-      {.code = "load_followed", .severity = kNote},
-      {.code = "load_not_followed"},
-      {.code = "load_not_proportional"},
+      {.code = "load_varies"},
       // about the identifiability of the parameters
-      {"undetermined_parameter", kNotIdentifiable},
-      {"undetermined_combination", kNotIdentifiable},
-      {"sigma_not_identifiable", kNotIdentifiable},
-      {"alpha_not_identifiable", kNotIdentifiable},
-      {"slip_force_not_identifiable", kNotIdentifiable},
-      {"asymmetry_not_identifiable", kNotIdentifiable},
-      {"slip_force_bounded_below", kBoundedBelow},
-      {"search_limit", kNotIdentifiable},
-      {"few_places", kNotIdentifiable},
-      {"force_at_limit", kNotIdentifiable, kWarning, true},
+      {"not_identifiable", kNotIdentifiable},
+      {"bounded_below", kBoundedBelow},
       {"unknown_past", kNotIdentifiable},
+      {"search_limit", kNotIdentifiable},
+      {"force_at_limit", kNotIdentifiable, kWarning, true},
       {.code = "shape_or_rig", .severity = kNote},
       {.code = "prior_contradicted"},
       // about the law: under its own law a parameter is as well known as before
-      {"law_undecided", kIdentifiable, kNote},
-      {"other_law_fits_better", kIdentifiable, kWarning, true},
+      {.code = "other_law", .holds_without_model = true},
       // about the model discrepancy
       {"loop_not_seen", kNotIdentifiable, kWarning, true},
       {"model_inadequate", kNotIdentifiable, kWarning, true},
       // about the search
-      {.code = "weights_not_settled"},
-      {.code = "fit_failed", .severity = kFailure},
+      {.code = "not_converged"},
   });
 }();
 

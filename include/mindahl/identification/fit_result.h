@@ -151,8 +151,8 @@ struct FitResult {
     return FindEstimate(parameters, name);
   }
 
-  /// Returns nullptr when nothing of the kind was found.
-  [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
+  /// Returns nullptr when nothing of the code, or of its kind if one is given, was found.
+  [[nodiscard]] const Finding* FindFinding(FindingCode code, std::string_view kind = {}) const;
 
   /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
   /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.

@@ -41,10 +41,6 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
               .numbers = {{"count", static_cast<double>(record.reversals.size())},
                           {"gate", gate.gate}}});
     }
-    if (record.glitches.total > 0) {
-      append({.code = "glitches_left_out",
-              .numbers = {{"count", static_cast<double>(record.glitches.total)}}});
-    }
     if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
   return findings;
@@ -95,10 +91,11 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
     const Eigen::Map<const Eigen::ArrayXd> of(counted.data(), std::ssize(counted));
     // The mean of a load of either sign differs from that of its magnitude.
     const double variation = std::sqrt(2 * (of - of.mean()).square().mean());
-    findings.push_back(OfRecord(
-        r, data.records.size(),
-        {.code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
-         .numbers = {{"variation", variation}}}));
+    findings.push_back(OfRecord(r, data.records.size(),
+                                {.code = "load_varies",
+                                 .severity = is_followed ? Severity::kNote : Severity::kWarning,
+                                 .numbers = {{"variation", variation}},
+                                 .kind = is_followed ? "followed" : "not_followed"}));
   }
   return findings;
 }
@@ -112,9 +109,9 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
   }
   // With as many directions as names, each parameter is undetermined by itself.
   const bool are_alone = local.null.size() >= names.size();
-  return Finding{.code = are_alone ? FindingCode("undetermined_parameter")
-                                   : FindingCode("undetermined_combination"),
-                 .parameters = std::move(names)};
+  return Finding{.code = "not_identifiable",
+                 .parameters = std::move(names),
+                 .kind = are_alone ? "without_effect" : "combination"};
 }
 
 std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
@@ -124,13 +121,13 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
     return findings;
   }
   const loop::LoopFacts& facts = result.WidestRecord().facts;
-  findings.push_back({.code = "slip_force_bounded_below",
+  findings.push_back({.code = "bounded_below",
                       .parameters = {"slip_force"},
                       .numbers = {{"peak_force", facts.peak_force}, {"amplitude", facts.amplitude}},
                       .kind = loop::Slides(facts) ? "slides" : ""});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
     findings.push_back(
-        {.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
+        {.code = "not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
   }
   return findings;
 }
@@ -159,17 +156,10 @@ std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
 }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
-  struct Row {
-    std::string_view name;
-    FindingCode code;
-  };
-  constexpr std::array kCodes = {Row{"sigma", "sigma_not_identifiable"},
-                                 Row{"alpha", "alpha_not_identifiable"},
-                                 Row{"slip_force", "slip_force_not_identifiable"}};
   std::vector<Finding> findings;
   // What is known does not depend on the confidence that is asked for.
   const double to_95 = kNormalQuantile95 / NormalQuantile(result.confidence);
-  for (const auto& [name, code] : kCodes) {
+  for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
       continue;
@@ -185,7 +175,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
              std::ranges::find(finding.parameters, name) != finding.parameters.end();
     });
     if (!wide || is_said) continue;
-    findings.push_back({.code = code,
+    findings.push_back({.code = "not_identifiable",
                         .parameters = {std::string(name)},
                         .numbers = {{"lower", lower}, {"upper", upper}},
                         .kind = "wide"});
@@ -282,7 +272,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
     const double amplitude = ContactAmplitude(result, law, result.records[r].facts.amplitude);
     const double peak_force = models::SteadyPeakForce(*result.model, law, amplitude);
     if (!is_known || peak_force >= (1 - thresholds.never_slips) * law.slip_force) continue;
-    return Finding{.code = "asymmetry_not_identifiable", .parameters = {"asymmetry"}};
+    return Finding{.code = "not_identifiable", .parameters = {"asymmetry"}, .kind = "below_slip"};
   }
   return std::nullopt;
 }
@@ -340,10 +330,11 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
   if (static_cast<double>(places) >= thresholds.fewest_places || samples < kAgain * places) {
     return std::nullopt;
   }
-  return Finding{.code = "few_places",
+  return Finding{.code = "not_identifiable",
                  .parameters = {"sigma", "alpha"},
                  .numbers = {{"places", static_cast<double>(places)},
-                             {"samples", static_cast<double>(samples)}}};
+                             {"samples", static_cast<double>(samples)}},
+                 .kind = "few_places"};
 }
 
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
@@ -357,13 +348,14 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
 
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
   if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
-  Finding finding{.code = choice->prefers_alternative() ? FindingCode("other_law_fits_better")
-                                                        : FindingCode("law_undecided"),
+  const bool is_better = choice->prefers_alternative();
+  Finding finding{.code = "other_law",
+                  .severity = is_better ? Severity::kWarning : Severity::kNote,
                   .parameters = {"sigma", "slip_force"},
                   .numbers = {{"sigma", choice->law.tangential_stiffness},
                               {"alpha", choice->law.shape_exponent},
                               {"slip_force", choice->law.slip_force}},
-                  .kind = choice->alternative->name};
+                  .kind = is_better ? "better" : "undecided"};
   if (choice->delta_aicc) finding.numbers.emplace_back("delta_aicc", *choice->delta_aicc);
   return finding;
 }

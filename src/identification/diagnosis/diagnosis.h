@@ -19,8 +19,8 @@ namespace mindahl::identification {
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
 
-/// Reversals that are not certain, glitches that are left out, and that no cycle is closed:
-/// whatever is fitted. Numbers of a record count from 1.
+/// Reversals that are not certain, and that no cycle is closed: whatever is fitted. Numbers of a
+/// record count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 
 /// `rows_missing` where time jumps by a quarter of a cycle or more, and the displacement with it:
@@ -28,9 +28,8 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 /// Numbers: gap and from, in seconds, and record of several.
 std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records);
 
-/// `load_followed` where the normal load varies within a record and the law knows it,
-/// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's
-/// standard deviation over its mean, and record of several.
+/// `load_varies`, within a record, which the law follows or does not know. Numbers: variation, the
+/// amplitude of a sine of the load's standard deviation over its mean, and record of several.
 std::vector<Finding> FindVaryingLoads(const ScaledRecords& data);
 
 /// Parameters on which, alone or combined, the records do not depend.
@@ -52,7 +51,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds);
 
-/// `asymmetry_not_identifiable`: of a contact that had been cycled before the records, and does not
+/// An asymmetry of a contact that had been cycled before the records, and does not
 /// slip as a whole in every one of those whose force has a known zero.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
