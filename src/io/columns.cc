@@ -297,13 +297,6 @@ bool LooksLikeUnit(std::string_view cell) {
   return IsKnown(symbol) || (symbol.size() != Trimmed(cell).size() && MayBeUnit(symbol));
 }
 
-std::size_t CountKnownWords(std::span<const std::string> cells) {
-  return static_cast<std::size_t>(std::ranges::count_if(cells, [](const std::string& cell) {
-    const Column column = ReadName(cell);
-    return !column.unit.empty() || !column.word.empty();
-  }));
-}
-
 void Observe(std::vector<Column>& columns) {
   for (Column& column : columns) ObserveValues(column);
   constexpr double kGreatestCoefficient = 2;

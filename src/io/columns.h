@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,9 +74,6 @@ Column ReadName(std::string_view header, std::string_view below = {});
 /// True for the symbol of a unit usual in such files (mm, N, V, bar...), and for a word in
 /// brackets.
 bool LooksLikeUnit(std::string_view cell);
-
-/// Returns how many of the header cells have a word or a unit that is known.
-std::size_t CountKnownWords(std::span<const std::string> cells);
 
 /// Returns the dimension of a unit; none of one that is not known.
 std::optional<Dimension> DimensionOf(std::string_view symbol);

@@ -297,34 +297,23 @@ std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
 
 struct RecordStream::State {
   State(const std::filesystem::path& path, const RecordColumns& asked)
-      : pieces(path, asked.encoding),
-        rows(pieces.Next()),
-        layout(FindLayout(rows, NameOfInput(path))),
-        builder(FirstRows(), asked),
-        reader(layout, builder.wanted()) {
-    if (!asked.with.empty()) {
-      Refuse("--with: a record that is read in pieces is of one file: join them before");
-    }
-    rows.remove_prefix(layout.data_offset);
-    std::vector<std::string>& notes = builder.file().notes;
-    if (!pieces.note().empty()) notes.insert(notes.begin(), pieces.note());
+      : reader(path, asked.encoding), builder(FirstRows(), asked) {
+    if (asked.with.empty()) return;
+    Refuse("--with: a record that is read in pieces is of one file: join them before");
   }
 
-  /// The table of the first rows, by which the content of the columns is judged: what becomes of
-  /// those at fault is for Next() to say.
-  CsvTable FirstRows() const {
-    TableReader first(layout);
-    first.Read(rows.substr(layout.data_offset));
-    Observe(first.table().columns);
-    return std::move(first.table());
+  /// Reads the rows by which the content of the columns is judged: what becomes of those at fault
+  /// is for Next() to say.
+  const CsvTable& FirstRows() {
+    reader.Read();
+    Observe(reader.table().columns);
+    return reader.table();
   }
 
-  LinePieces pieces;
-  std::string_view rows;  // of the first piece
-  Layout layout;
-  RecordBuilder builder;
   TableReader reader;
-  std::string refusal;  // of a row that is reached next
+  RecordBuilder builder;
+  bool has_rows = true;  // that are no samples yet
+  std::string refusal;   // of a row that is reached next
 };
 
 RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& asked)
@@ -334,17 +323,15 @@ RecordStream::~RecordStream() = default;
 const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
 
 bool RecordStream::Next(Samples& samples) {
-  auto& [pieces, rows, layout, builder, reader, refusal] = *state_;
+  auto& [reader, builder, has_rows, refusal] = *state_;
   for (const auto column : loop::kRecordColumns) (samples.*column).clear();
   samples.lines.clear();
   while (samples.lines.empty()) {
     if (!refusal.empty()) throw InputError(refusal);
-    const std::string_view text = rows.empty() ? pieces.Next() : std::exchange(rows, {});
-    reader.Clear();
-    reader.Read(text);
-    if (text.empty()) reader.EndText();
+    const bool goes_on = std::exchange(has_rows, false) || reader.Read();
     refusal = builder.Add(reader.table(), samples);
-    if (text.empty() && refusal.empty()) return false;
+    reader.KeepColumns(builder.wanted());
+    if (!goes_on && refusal.empty()) return false;
   }
   return true;
 }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/text.h"
-#include "io/source.h"
+#include "io/cells.h"
 
 namespace mindahl::io {
 namespace {
@@ -24,28 +24,28 @@ struct Row {
   std::string_view text = {};
   std::size_t line = 0;
   std::size_t offset = 0;
+  bool is_comment = false;  // the last above all rows, where names may stand
   Strings cells = {};
   std::vector<Cell::Kind> kinds = {};
-  std::size_t numbers = 0, texts = 0, empty = 0;
   std::size_t filled = 0;   // number of cells, empty ones at the end aside
   std::size_t columns = 0;  // number of cells, one trailing delimiter aside
 
-  /// @returns false where it has no cell with a content
-  bool ReadCells(char delimiter, char decimal_mark) {
+  void ReadCells(char delimiter, char decimal_mark) {
     CellCursor cursor(text, delimiter);
     while (cursor.has_next()) {
       kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), decimal_mark).kind);
-      numbers += kinds.back() == Cell::Kind::kNumber ? 1 : 0;
-      texts += kinds.back() == Cell::Kind::kText ? 1 : 0;
-      empty += cells.back().empty() ? 1 : 0;
       if (!cells.back().empty()) filled = cells.size();
     }
     columns = cells.size() > 1 && cells.back().empty() ? cells.size() - 1 : cells.size();
-    return filled > 0;
+  }
+  [[nodiscard]] std::size_t Count(Cell::Kind kind) const {
+    return static_cast<std::size_t>(std::ranges::count(kinds, kind));
   }
   /// Looks like data whatever the other rows are: "sample_rate,200" does not, "1,2" does.
   [[nodiscard]] bool HasData() const {
-    return numbers >= 1 &&
+    const std::size_t texts = Count(Cell::Kind::kText);
+    const auto empty = static_cast<std::size_t>(std::ranges::count(cells, std::string()));
+    return !is_comment && Count(Cell::Kind::kNumber) >= 1 &&
            (kinds.front() == Cell::Kind::kNumber || cells.size() - texts - empty >= 2);
   }
   /// Returns that many names of a header between blanks: words, each with what is in brackets
@@ -82,11 +82,12 @@ bool IsUnitsRow(std::span<const std::string> cells) {
 /// columns of numbers.
 class Reading {
  public:
-  Reading(std::span<const Row> sampled, const std::string& file, char delimiter, char decimal_mark)
-      : layout_{.header = {.file = file}, .delimiter = delimiter, .decimal_mark = decimal_mark} {
+  Reading(std::span<const Row> sampled, char delimiter, char decimal_mark)
+      : layout_{.delimiter = delimiter, .decimal_mark = decimal_mark} {
     std::map<std::size_t, std::size_t> rows_with_columns;
     for (Row row : sampled) {
-      if (!row.ReadCells(delimiter, decimal_mark)) continue;
+      row.ReadCells(delimiter, decimal_mark);
+      if (row.filled == 0) continue;
       if (row.HasData()) ++rows_with_columns[row.columns];
       rows_.push_back(std::move(row));
     }
@@ -95,65 +96,60 @@ class Reading {
       if (rows < most_rows) continue;
       most_rows = rows;
       columns_ = columns;
+      score_ = 0;
     }
-    std::vector<std::size_t> numbers;
+    std::vector<std::size_t> numbers;  // of each column
     for (const Row& row : rows_) {
       if (!row.HasData()) continue;
       numbers.resize(std::max(numbers.size(), row.kinds.size()));
-      layout_.holds_numbers.resize(numbers.size());
+      layout_.is_wanted.resize(numbers.size());
       for (std::size_t column = 0; column < row.kinds.size(); ++column) {
-        const Cell::Kind kind = row.kinds[column];
-        const bool is_number = kind == Cell::Kind::kNumber;
+        const bool is_number = row.kinds[column] == Cell::Kind::kNumber;
+        const bool is_broken = row.kinds[column] == Cell::Kind::kBroken;
         if (is_number) ++numbers[column];
-        if (is_number || kind == Cell::Kind::kBroken) layout_.holds_numbers[column] = true;
+        if (is_number || is_broken) layout_.is_wanted[column] = true;
+        if (row.columns == columns_) score_ += int{is_number} - int{is_broken};
       }
-      if (row.columns != columns_) continue;
-      score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
     }
-    for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
+    for (const std::size_t count : numbers) mostly_numbers_.push_back(2 * count > most_rows);
   }
 
-  /// Returns how well it explains the rows; without a row of data, how many cells it finds.
-  [[nodiscard]] std::pair<bool, long> rank() const {
-    const auto cells = static_cast<long>(rows_.empty() ? 0 : rows_.back().columns);
-    return {columns_ > 0, columns_ > 0 ? score_ : cells};
-  }
+  /// Returns how well it explains the rows.
+  [[nodiscard]] long score() const { return score_; }
 
   /// Finds the data and the header above them, which may be a comment.
-  Layout Find(const Row& comment) && {
-    const std::string& file = layout_.header.file;
-    if (rows_.empty()) Refuse("{}: holds no data, only blank or '#' lines", file);
+  Layout Find(CsvTable& table) && {
+    const auto comments = std::ranges::count(rows_, true, &Row::is_comment);
+    const auto rows = std::span(rows_).subspan(static_cast<std::size_t>(comments));
+    if (rows.empty()) Refuse("{}: holds no data, only blank or '#' lines", table.file);
     if (columns_ == 0) {
-      // The first row that cannot be a header stands for the file.
-      const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
-      const Row& row = data == rows_.end() ? rows_.back() : *data;
       Refuse(
           "{}:{}: none of the first {} rows has numbers, nor has '{}': expected columns of numbers "
           "under an optional header, between tabs, ';', blanks, or commas where these are no "
           "decimal marks",
-          file, row.line, rows_.size(), ForMessage(row.text));
+          table.file, rows.back().line, rows.size(), ForMessage(rows.back().text));
     }
-    FindData();
-    FindNames();
-    if (data_ == 0) FindNamesIn(comment);
+    FindData(table);
+    FindNames(table);
     const std::size_t columns = std::max({columns_, names_.size(), units_.size()});
     for (auto* const of_each : {&names_, &units_}) of_each->resize(columns);
-    layout_.holds_numbers.resize(columns);
-    layout_.mostly_numbers.resize(columns);
-    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
-    for (std::size_t k = 1; k < columns; ++k) {
-      const bool may_be = layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
-      if (may_be && units_[k - 1].empty() && LooksLikeUnit(names_[k])) units_[k - 1] = names_[k];
-    }
+    layout_.is_wanted.resize(columns);
+    mostly_numbers_.resize(columns);
+    layout_.text_column = static_cast<std::size_t>(std::ranges::find(mostly_numbers_, true) -
+                                                   mostly_numbers_.begin());
     for (std::size_t k = 0; k < columns; ++k) {
-      layout_.header.columns.push_back(ReadName(names_[k], units_[k]));
+      // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+      const bool is_unit_behind = k + 1 < columns && mostly_numbers_[k] &&
+                                  !mostly_numbers_[k + 1] && LooksLikeUnit(names_[k + 1]);
+      if (is_unit_behind && units_[k].empty()) units_[k] = names_[k + 1];
+      table.columns.push_back(ReadName(names_[k], units_[k]));
     }
     return std::move(layout_);
   }
 
  private:
   /// Finds the first row of data: with as many cells as most have, and no text among numbers.
-  void FindData() {
+  void FindData(CsvTable& table) {
     // A header of LabVIEW has rows of numbers, and states their interval in place of times.
     const auto names =
         std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
@@ -162,20 +158,20 @@ class Reading {
       // A trailing delimiter, or empty cells at the end, leave the number of columns open.
       bool may_be = row.filled <= columns_ && columns_ <= row.cells.size() && row.HasData();
       for (std::size_t column = 0; column < row.kinds.size() && may_be; ++column) {
-        may_be = !layout_.mostly_numbers[column] || row.kinds[column] != Cell::Kind::kText;
+        may_be = !mostly_numbers_[column] || row.kinds[column] != Cell::Kind::kText;
       }
       return may_be;
     };
-    const auto data = std::find_if(is_labview ? names : rows_.begin(), rows_.end(), is_data);
+    auto data = std::find_if(is_labview ? names : rows_.begin(), rows_.end(), is_data);
     // Else text is in every row, each time in another column.
-    if (data != rows_.end()) data_ = static_cast<std::size_t>(data - rows_.begin());
-    layout_.data_offset = rows_[data_].offset;
-    layout_.data_line = rows_[data_].line;
+    if (data == rows_.end()) data = std::ranges::find(rows_, false, &Row::is_comment);
+    data_ = static_cast<std::size_t>(data - rows_.begin());
+    layout_.data_offset = data->offset;
+    layout_.data_line = data->line;
     for (const Row& row : std::span(rows_).first(data_)) {
-      if (!is_labview || layout_.mostly_numbers[0] || row.cells.size() < 2) continue;
-      if (row.cells[0] != "Delta_X") continue;
-      const double step = ReadCell(row.cells[1], layout_.decimal_mark).value;
-      if (step > 0) layout_.header.interval = step;
+      if (!is_labview || mostly_numbers_[0] || row.cells[0] != "Delta_X") continue;
+      const double step = ReadCell(row.cells.at(1), layout_.decimal_mark).value;
+      if (step > 0) table.interval = step;
     }
   }
 
@@ -184,9 +180,10 @@ class Reading {
   std::optional<Strings> HeaderCells(const Row& row) const {
     const bool by_blanks = layout_.delimiter == kBlanks;
     // "Load 1" between blanks is words, of which few are numbers.
-    const bool is_text = row.numbers == 0 && row.texts >= 1;
+    const std::size_t numbers = row.Count(Cell::Kind::kNumber);
+    const bool is_text = numbers == 0 && row.Count(Cell::Kind::kText) >= 1;
     const bool is_sentence =
-        by_blanks && row.kinds.front() == Cell::Kind::kText && 2 * row.numbers < row.kinds.size();
+        by_blanks && row.kinds.front() == Cell::Kind::kText && 2 * numbers < row.kinds.size();
     if (!is_text && !is_sentence) return std::nullopt;
     // Rows may lack the last column, as that of comments or events.
     const std::size_t columns = std::max(row.filled, rows_[data_].filled);
@@ -194,21 +191,22 @@ class Reading {
     if (is_text && columns <= row.cells.size() && columns <= most) {
       return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
     }
-    return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
+    return by_blanks || row.is_comment ? row.NamesByBlanks(columns_) : std::nullopt;
   }
 
   /// Looks for names and units: the row above the data, or, where that is no header or one of
   /// units, the nearest row above of which two words are known.
-  void FindNames() {
+  void FindNames(CsvTable& table) {
     std::size_t header = data_;
     bool are_known = false;
     for (std::size_t k = data_; k-- > 0;) {
       const Row& row = rows_[k];
-      const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
+      const bool may_be_data =
+          row.columns >= columns_ && 2 * row.Count(Cell::Kind::kNumber) >= row.columns;
       if (names_.empty() && may_be_data) break;
       auto cells = HeaderCells(row);
       if (!cells) continue;
-      if (IsUnitsRow(*cells)) {
+      if (!row.is_comment && IsUnitsRow(*cells)) {
         const bool says_so = LowerCase(cells->front()).find("unit") != std::string::npos;
         // Units may stand above the names.
         const bool are_above = k + 1 == header && std::ranges::all_of(*cells, LooksLikeUnit);
@@ -220,8 +218,12 @@ class Reading {
         continue;
       }
       const bool is_adjacent = names_.empty() && (k + 1 == data_ || k + 1 == header);
-      const std::size_t known = CountKnownWords(*cells);
-      if (are_known || !(is_adjacent || known >= 2)) continue;
+      const auto known = std::ranges::count_if(*cells, [](const std::string& cell) {
+        const Column column = ReadName(cell);
+        return !column.unit.empty() || !column.word.empty();
+      });
+      const bool may_be = row.is_comment ? names_.empty() && known >= 2 : is_adjacent || known >= 2;
+      if (are_known || !may_be) continue;
       are_known = known > 0;
       header = k;
       names_ = *std::move(cells);
@@ -231,42 +233,64 @@ class Reading {
       names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
       layout_.names_row = std::exchange(layout_.units_row, {});
     }
-    if (data_ == 0) return;
-    const std::string& file = layout_.header.file;
+    const bool has_rows = data_ > 0 && !rows_[data_ - 1].is_comment;
     for (const Row& row : std::span(rows_).first(data_)) {
-      if (!row.cells.back().starts_with('"')) continue;
-      Refuse("{}:{}: a quotation mark opened here is never closed in its line", file, row.line);
+      if (row.is_comment || !row.cells.back().starts_with('"')) continue;
+      Refuse("{}:{}: a quotation mark opened here is never closed in its line", table.file,
+             row.line);
     }
-    layout_.header.header_line = rows_[header].line;
-    if (header < data_) return;
-    const Row& row = rows_[data_ - 1];
-    Refuse(
-        "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-        "every column, begin the line with '#' if it is a comment, or leave out commas that "
-        "separate "
-        "thousands",
-        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
-        rows_[data_].line);
-  }
-
-  /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
-  void FindNamesIn(Row comment) {
-    comment.text.remove_prefix(std::min(comment.text.find('#') + 1, comment.text.size()));
-    if (!comment.ReadCells(layout_.delimiter, layout_.decimal_mark)) return;
-    auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
-                                                  : comment.NamesByBlanks(columns_);
-    if (!cells || CountKnownWords(*cells) < 2) return;
-    names_ = *std::move(cells);
-    layout_.header.header_line = comment.line;
+    if (header < data_) {
+      table.header_line = rows_[header].line;
+    } else if (has_rows) {
+      const Row& row = rows_[data_ - 1];
+      Refuse(
+          "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
+          "every column, begin the line with '#' if it is a comment, or leave out commas that "
+          "separate thousands",
+          table.file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
+          rows_[data_].line);
+    }
   }
 
   Layout layout_;
-  Strings names_, units_;  // one a column, or none
-  std::vector<Row> rows_;
-  std::size_t columns_ = 0;  ///< number in most rows with data
-  long score_ = 0;           ///< numbers less broken numbers in the rows with so many columns
-  std::size_t data_ = 0;     // index of the first data row
+  std::vector<bool> mostly_numbers_;  // of each column, in the rows with data
+  Strings names_, units_;             // one a column, or none
+  std::vector<Row> rows_;             // the comment first
+  std::size_t columns_ = 0;           // number in most rows with data
+  // Numbers less broken numbers in the rows with so many columns.
+  long score_ = std::numeric_limits<long>::min();
+  std::size_t data_ = 0;  // index of the first data row
 };
+
+/// Finds how a text, or its begin, is to be read, and the columns of its table.
+Layout FindLayout(std::string_view text, CsvTable& table) {
+  constexpr std::size_t kSampledRows = 1000;  // at most so many are above the data
+  std::vector<Row> sampled;
+  std::size_t line = 0;
+  for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
+    Row row{.line = ++line, .offset = text.size() - rest.size()};
+    row.text = TakeLine(rest);
+    row.is_comment = IsBlankOrComment(row.text);
+    const bool has_comment = !sampled.empty() && sampled.front().is_comment;
+    if (!row.is_comment) {
+      sampled.push_back(std::move(row));
+    } else if (sampled.size() == (has_comment ? 1 : 0) && !Trimmed(row.text).empty()) {
+      row.text.remove_prefix(row.text.find('#') + 1);
+      sampled.assign(1, std::move(row));
+    }
+  }
+  std::optional<Reading> best;
+  // A tie goes to the first: a cell may contain what comes after it in this list.
+  for (const char delimiter : {'\t', ';', ',', kBlanks}) {
+    for (const char decimal_mark : {'.', ','}) {
+      const bool occurs = delimiter == kBlanks || text.find(delimiter) != text.npos;
+      if (!occurs || decimal_mark == delimiter) continue;
+      Reading reading(sampled, delimiter, decimal_mark);
+      if (!best || reading.score() > best->score()) best = std::move(reading);
+    }
+  }
+  return std::move(*best).Find(table);
+}
 
 }  // namespace
 
@@ -323,46 +347,39 @@ void CsvTable::ThrowAmbiguous(Role role, std::size_t one, std::size_t other) con
          Label(one), Label(other), RulesOf(role).name, RulesOf(role).option, one + 1);
 }
 
-Layout FindLayout(std::string_view text, const std::string& file) {
-  constexpr std::size_t kSampledRows = 1000;  // at most so many are above the data
-  std::vector<Row> sampled;
-  Row comment;  // the last above all rows, where a header may stand
-  std::size_t line = 0;
-  for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
-    Row row{.line = ++line, .offset = text.size() - rest.size()};
-    row.text = TakeLine(rest);
-    if (!IsBlankOrComment(row.text)) {
-      sampled.push_back(std::move(row));
-    } else if (sampled.empty() && !Trimmed(row.text).empty()) {
-      comment = std::move(row);
-    }
-  }
-  std::optional<Reading> best;
-  // A tie goes to the first: a cell may contain what comes after it in this list.
-  for (const char delimiter : {'\t', ';', ',', kBlanks}) {
-    for (const char decimal_mark : {'.', ','}) {
-      const bool occurs = delimiter == kBlanks || text.find(delimiter) != text.npos;
-      if (!occurs || decimal_mark == delimiter) continue;
-      Reading reading(sampled, file, delimiter, decimal_mark);
-      if (!best || reading.rank() > best->rank()) best = std::move(reading);
-    }
-  }
-  return std::move(*best).Find(comment);
+TableReader::TableReader(const std::filesystem::path& path, const std::string& encoding)
+    : pieces_(path, encoding), first_(pieces_.Next()), table_{.file = NameOfInput(path)} {
+  if (!pieces_.note().empty()) table_.notes.push_back(pieces_.note());
+  layout_ = FindLayout(first_, table_);
+  first_.remove_prefix(layout_.data_offset);
+  line_ = layout_.data_line - 1;
 }
 
-TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& wanted)
-    : layout_(layout),
-      table_(layout.header),
-      is_wanted_(wanted.empty() ? layout.holds_numbers
-                                : std::vector<bool>(layout.header.columns.size())),
-      // A row of text has its text in the first column of numbers.
-      text_column_(static_cast<std::size_t>(std::ranges::find(layout.mostly_numbers, true) -
-                                            layout.mostly_numbers.begin())),
-      line_(layout.data_line - 1) {
-  for (const std::size_t column : wanted) is_wanted_[column] = true;
+bool TableReader::Read() {
+  const std::string no_content = {layout_.delimiter, ' ', '\t', '\r'};
+  std::string_view text = first_.empty() ? pieces_.Next() : std::exchange(first_, {});
+  const bool is_end = text.empty();
+  while (!text.empty()) {
+    ++line_;
+    const std::string_view row = TakeLine(text);
+    const std::size_t first = row.starts_with(' ') ? row.find_first_not_of(' ') : 0;
+    const char front = first < row.size() ? row[first] : ' ';
+    const bool is_number = IsDigit(front) || front == '-';
+    const bool may_be_none = !is_number && !IsLetter(front);
+    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
+      continue;
+    }
+    if (!is_number && IsText(row)) continue;
+    EndText();
+    ReadRow(row);
+  }
+  if (is_end) EndText();
+  return !is_end;
 }
 
-void TableReader::Clear() {
+void TableReader::KeepColumns(const std::vector<std::size_t>& wanted) {
+  layout_.is_wanted.assign(table_.columns.size(), false);
+  for (const std::size_t column : wanted) layout_.is_wanted[column] = true;
   table_.lines.clear();
   for (Column& column : table_.columns) {
     column.values.clear();
@@ -375,33 +392,14 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
   return fmt::format("{}:{}:{}: {}", table_.file, line_, column + 1, fault);
 }
 
-void TableReader::Read(std::string_view text) {
-  const std::string no_content = {layout_.delimiter, ' ', '\t', '\r'};
-  while (!text.empty()) {
-    ++line_;
-    const std::string_view row = TakeLine(text);
-    const std::size_t first = row.starts_with(' ') ? row.find_first_not_of(' ') : 0;
-    const char front = first < row.size() ? row[first] : ' ';
-    const bool is_number = IsDigit(front) || front == '-';
-    const bool may_be_none = !is_number && !IsLetter(front);
-    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
-      continue;
-    }
-    if (!is_number && BelongsToHeader(row)) continue;
-    EndText();
-    ReadRow(row);
-    front_ = front;
-  }
-}
-
 void TableReader::ReadRow(std::string_view row) {
-  const std::size_t columns = is_wanted_.size();
+  const std::size_t columns = layout_.is_wanted.size();
   const bool has_points = layout_.decimal_mark == '.';
   table_.lines.push_back(line_);
   CellCursor cells(row, layout_.delimiter);
   std::size_t count = 0;
   for (; count < columns && cells.has_next(); ++count) {
-    if (!is_wanted_[count]) {
+    if (!layout_.is_wanted[count]) {
       cells.Take();
       continue;
     }
@@ -424,8 +422,8 @@ void TableReader::ReadRow(std::string_view row) {
                         table_.file, line_);
   }
   if (!fault.empty()) Break(fault, 0);
-  if (std::find(is_wanted_.begin() + static_cast<std::ptrdiff_t>(count), is_wanted_.end(), true) ==
-      is_wanted_.end()) {
+  if (std::find(layout_.is_wanted.begin() + static_cast<std::ptrdiff_t>(count),
+                layout_.is_wanted.end(), true) == layout_.is_wanted.end()) {
     return;
   }
   Break(At(count, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
@@ -435,8 +433,8 @@ void TableReader::ReadRow(std::string_view row) {
 
 /// Says what is at fault in the last row, from a column on.
 void TableReader::Break(const std::string& fault, std::size_t column) {
-  for (; column < is_wanted_.size(); ++column) {
-    if (!is_wanted_[column]) continue;
+  for (; column < layout_.is_wanted.size(); ++column) {
+    if (!layout_.is_wanted[column]) continue;
     Column& of = table_.columns[column];
     of.values.resize(table_.lines.size());
     of.values.back() = kBroken;
@@ -456,27 +454,21 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
   return is_missing ? cell.value : kBroken;
 }
 
-/// True for a row of text that repeats the header, or may be above a header that is repeated.
-bool TableReader::BelongsToHeader(std::string_view row) {
-  if ((!layout_.names_row.empty() && row == layout_.names_row) ||
-      (repeats_header_ && row == layout_.units_row)) {
-    repeats_header_ = true;
-    text_fault_.clear();
-    return true;
-  }
-  // Rows with a label begin alike.
-  if (text_column_ == is_wanted_.size() || (IsLetter(row.front()) && row.front() == front_)) {
-    return false;
-  }
+/// True for a row of text that repeats the header, or is above a header that is repeated, which
+/// the next row of numbers decides.
+bool TableReader::IsText(std::string_view row) {
+  if (row == layout_.names_row) text_fault_.clear();
+  if (row == layout_.names_row || row == layout_.units_row) return true;
   CellCursor cells(row, layout_.delimiter);
-  for (std::size_t k = 0; k < text_column_ && cells.has_next(); ++k) cells.Take();
+  for (std::size_t k = 0; k < layout_.text_column && cells.has_next(); ++k) cells.Take();
   double number = 0.0;
-  if (cells.TakeNumber(number)) return false;
+  if (layout_.text_column == table_.columns.size() || cells.TakeNumber(number)) return false;
   const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;
   text_line_ = line_;
-  text_fault_ = At(text_column_, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark));
+  text_fault_ =
+      At(layout_.text_column, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark));
   if (!layout_.names_row.empty()) {
     text_fault_ += fmt::format(
         "; a further block of rows must have the columns of line {} above it", table_.header_line);
@@ -484,36 +476,20 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   return true;
 }
 
+/// Ends the text above a row of numbers, or the file, which is at fault unless it is a header.
 void TableReader::EndText() {
-  if (!text_fault_.empty()) {
-    table_.lines.push_back(text_line_);
-    Break(text_fault_, 0);
-  } else if (repeats_header_) {
-    ++table_.repeats;
-  }
+  if (text_fault_.empty()) return;
+  table_.lines.push_back(text_line_);
+  Break(text_fault_, 0);
   text_fault_.clear();
-  repeats_header_ = false;
 }
 
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding) {
-  const std::string name = NameOfInput(path);
-  LinePieces pieces(path, encoding);
-  std::string_view text = pieces.Next();
-  const Layout layout = FindLayout(text, name);
-  TableReader reader(layout);
-  for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
-    reader.Read(text);
+  TableReader reader(path, encoding);
+  while (reader.Read()) {
   }
-  reader.EndText();
-  CsvTable table = std::move(reader.table());
-  Observe(table.columns);
-  if (table.repeats > 0) {
-    table.notes.push_back(
-        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
-                    table.header_line, table.repeats));
-  }
-  if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
-  return table;
+  Observe(reader.table().columns);
+  return std::move(reader.table());
 }
 
 }  // namespace mindahl::io

@@ -135,8 +135,8 @@ Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a
 x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for the 2 columns of line
    3 +kName
 # rig 3¶x [m],F [N]¶ | :2: none of the first 1 rows has numbers, nor has 'x [m],F [N]' +kExpected
-x,F¶nan,n/a¶#N/A,nan¶ | :2: none of the first 3 rows has numbers, nor has 'nan,n/a' +kExpected
-#N/A,#DIV/0!¶#VALUE!,#N/A¶ | :1: none of the first 2 rows has numbers, nor has '#N/A,#DIV/0!' +kExpected
+x,F¶nan,n/a¶#N/A,nan¶ | :3: none of the first 3 rows has numbers, nor has '#N/A,nan' +kExpected
+#N/A,#DIV/0!¶#VALUE!,#N/A¶ | :2: none of the first 2 rows has numbers, nor has '#VALUE!,#N/A' +kExpected
 x,F¶1,a¶2,b¶ | :2:2: 'F' (column 2) holds no numbers
 x,F¶1,2¶ #n/a,3¶ | :3:1: '#n/a' +kFill
 )faults";

@@ -76,6 +76,7 @@ HoursMicronsAndDynes 2 3 1.5e-6 2.5e-5 1800.0 | elapsed [h],disp_micron,load [dy
   0.5,2,3¶
 ExcelThatStatesItsDelimiter 2 3 1.5e-6 2.5e-3 0.01 | sep=;¶Zeit [ms];Verschiebung [µm];Kraft [mN]¶
   0;1,5;2,5¶10;2;3¶
+UnitsBelowAHeaderBehindAMark 2 3 1.5e-3 2500 1.0 | # time,displacement,force¶s,mm,kN¶0,1.5,2.5¶1,2,3¶
 HeaderBehindAMarkOfAComment 2 3 1.5e-3 2.5 1.0 | # time [s] displacement [mm] force [N]¶0 1.5 2.5¶
   1 2 3¶
 TimeWithoutAHeader 2 3 1 5 - | 0,1,5¶1,-1,-5¶2,1,5¶3,-1,-5¶
@@ -119,7 +120,7 @@ RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение,
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 56U);
+  EXPECT_EQ(layouts.size(), 57U);
   for (const Strings& layout : layouts) {
     SCOPED_TRACE(layout[0]);
     std::vector<std::string> head;
