@@ -106,6 +106,7 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   // Results go out in one piece at the end: of a run that fails nothing is printed, and what a full
   // disk does not take is noticed.
   std::ostringstream results;
+  results.exceptions(std::ios::badbit);  // where memory runs out
   CLI::App app{
       "Identifies the friction parameters of a contact from its measured hysteresis loop:\n"
       "tangential displacement and force in; Dahl's stiffness sigma [N/m], shape exponent alpha "
