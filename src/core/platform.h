@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace mindahl {
 
@@ -33,15 +33,10 @@ int EndFileAt(int file, std::uintmax_t size);
 /// no such request is left to itself.
 int WriteToDisk(int file);
 int CloseFile(int file);
-int CopyPermissions(const std::string& from, int file);
 
-/// Holds what a program wrote.
-struct ProgramOutput {
-  std::string output, messages;
-  bool succeeded = false;  // it ended by itself, with status 0
-};
-/// Runs a program, found on PATH, with no shell; what it reads and writes is in files without
-/// names.
-int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written);
+/// Runs a command of the shell on an input, both in files without names; what it says of errors
+/// stands among ours.
+/// @returns what it writes; empty where it cannot be run or fails
+std::optional<std::string> OutputOf(const std::string& command, std::string_view input);
 
 }  // namespace mindahl

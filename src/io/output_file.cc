@@ -44,7 +44,10 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   int file = -1;
   int fault = replaces ? OpenFile(name, Opening::kNew, file)
                        : OpenFile(path.string(), Opening::kExisting, file);
-  if (fault == 0 && replaces && is_old) fault = CopyPermissions(target.string(), file);
+  if (fault == 0 && replaces && is_old) {
+    std::filesystem::permissions(name, old.permissions(), error);
+    fault = error.value();
+  }
   if (fault == 0) fault = WriteFile(file, content);
   if (fault == 0 && replaces) fault = WriteToDisk(file);
   // A full disk may show only here.

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <optional>
 #include <set>
 #include <span>
 #include <string_view>
@@ -251,21 +250,13 @@ std::string SvgOf(const Plot& plot) {
 }
 
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
-  ProgramOutput png;
-  const int error = RunProgram({"rsvg-convert", "--format=png"}, svg, png);
-  if (error == ENOENT) {
-    Refuse(
-        "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
-        "librsvg2-bin), or give a name that ends in .svg");
-  }
-  const std::string said = error != 0 ? std::strerror(error) : png.messages;
+  const std::optional<std::string> png = OutputOf("rsvg-convert --format=png", svg);
   // A disk that is full may end the file, and not the program.
-  if (error == 0 && png.succeeded && png.output.ends_with("IEND\xAE\x42\x60\x82")) {
-    return png.output;
-  }
-  Refuse("cannot draw '{}': rsvg-convert {}", path.string(),
-         png.succeeded ? "wrote only a part of it; is the disk full?"
-                       : "failed: " + said.substr(0, said.find('\n')));
+  if (png && png->ends_with("IEND\xAE\x42\x60\x82")) return *png;
+  Refuse(
+      "cannot draw '{}': rsvg-convert, which makes PNG, is not on PATH (Debian: librsvg2-bin) or "
+      "failed: a name that ends in .svg needs no program",
+      path.string());
 }
 
 bool IsPng(const std::filesystem::path& path) {

@@ -56,10 +56,10 @@ struct CsvTable {
 /// are skipped. A file whose first row is data has the header of a last comment above it, or none.
 struct Layout {
   char delimiter = ',', decimal_mark = '.';
-  std::vector<bool> is_wanted = {};  // of each column; found: it holds some numbers
-  std::size_t text_column = 0;       // mostly holds numbers: text is seen there
-  std::size_t data_offset = 0;       // start of the first data row [bytes]
-  std::size_t data_line = 0;         // its physical line
+  std::vector<bool> is_wanted = {};            // of each column; found: it holds some numbers
+  std::size_t text_column = 0;                 // mostly holds numbers: text is seen there
+  std::size_t data_offset = 0;                 // start of the first data row [bytes]
+  std::size_t data_line = 0;                   // its physical line
   std::string names_row = {}, units_row = {};  // as they stand in the file: blocks repeat them
 };
 

@@ -10,7 +10,6 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
-#include <spawn.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -42,7 +41,7 @@ enum Call {
   kClose,
   kMalloc,
   kThread,
-  kSpawn,
+  kSystem,
   kDirectory,
   kCalls
 };
@@ -54,7 +53,7 @@ struct CallRow {
 };
 CallRow calls[kCalls] = {{"write", ENOSPC, 0},  {"open", EMFILE, 0},   {"rename", EACCES, 0},
                          {"fsync", EIO, 0},     {"truncate", EIO, 0},  {"close", EIO, 0},
-                         {"malloc", ENOMEM, 0}, {"thread", EAGAIN, 0}, {"spawn", EAGAIN, 0},
+                         {"malloc", ENOMEM, 0}, {"thread", EAGAIN, 0}, {"system", EAGAIN, 0},
                          {"mkdir", ENOSPC, 0}};
 
 bool is_counting = false;
@@ -211,11 +210,9 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   return Next<decltype(&pthread_create)>("pthread_create")(thread, attributes, start, argument);
 }
 
-int posix_spawnp(pid_t* child, const char* file, const posix_spawn_file_actions_t* actions,
-                 const posix_spawnattr_t* attributes, char* const* argv, char* const* environment) {
-  if (Fails(kSpawn)) return EAGAIN;
-  return Next<decltype(&posix_spawnp)>("posix_spawnp")(child, file, actions, attributes, argv,
-                                                       environment);
+int system(const char* command) {
+  if (Fails(kSystem)) return -1;
+  return Next<decltype(&system)>("system")(command);
 }
 
 void* malloc(size_t size) { return Fails(kMalloc) ? nullptr : __libc_malloc(size); }

@@ -59,7 +59,7 @@ COMMANDS = [
             table="table.csv"),
 ]
 KINDS = {"write": "1+~", "open": "1+", "rename": "1", "fsync": "1+", "truncate": "1", "close": "1",
-         "mkdir": "1", "spawn": "1", "thread": "1+", "malloc": "1+"}
+         "mkdir": "1", "system": "1", "thread": "1+", "malloc": "1+"}
 
 
 def places(count, most):
