@@ -279,9 +279,9 @@ std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
   const CsvTable table = ReadCsvTable(path);
   Quantity displacement = ReadQuantity(column, table, Role::kDisplacement);
   if (displacement.terms.empty()) {
-    const bool first_is_another =
-        BestColumn(table, Role::kTime) == 0U || BestColumn(table, Role::kForce) == 0U;
-    const auto best = first_is_another ? BestColumn(table, Role::kDisplacement) : std::nullopt;
+    const Column& front = table.columns.front();
+    const bool is_another = front.names(Role::kTime) || front.names(Role::kForce);
+    const auto best = is_another ? BestColumn(table, Role::kDisplacement) : std::nullopt;
     displacement.terms = {{best.value_or(0)}};
   }
   const Column& first = table.columns[displacement.first_column()];

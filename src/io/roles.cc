@@ -49,6 +49,15 @@ int EvidenceFor(const Column& column, Role role) {
   return found > kLesser && column.is_lesser ? found - kLesser : found;
 }
 
+/// Returns how well a column suits a role: 0 is not at all. What goes to and fro is a displacement
+/// or a force before what rests.
+int ScoreFor(const Column& column, Role role) {
+  const int evidence = EvidenceFor(column, role);
+  if (role > Role::kForce || evidence == 0) return column.is_numeric ? evidence : 0;
+  // A column of text is taken where there is no other, and refused by its first row.
+  return column.values.empty() ? 1 : evidence + (column.goes_to_and_fro ? kMoving : 0);
+}
+
 /// Returns the unit in which a number is a stamp since 1970, "" where it is none.
 std::string UnitOfStamp(double number) {
   constexpr double kFrom2001 = 1e9;  // [s] since 1970, to 2100
@@ -79,7 +88,7 @@ class RoleAssigner {
       }
     }
     const std::array is_found = {IsMissing(kPair[0]), IsMissing(kPair[1])};
-    FindPair();
+    for (const Role role : kPair) TakeBest(role);
     if (!asked.sample_rate) TakeBest(Role::kTime);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     for (const std::string& covariate : asked.covariates) {
@@ -116,15 +125,17 @@ class RoleAssigner {
   /// Takes the column with the best evidence, where none is given.
   void TakeBest(Role role) {
     if (!IsMissing(role)) return;
-    const std::optional<std::size_t> best = BestColumn(table_, role, taken_);
-    if (!best && !Of(role).given_unit.empty()) ThrowNoColumn(role);
+    const std::optional<std::size_t> best = BestColumn(table_, role, NotGoingWith(role));
+    if (!best && role > Role::kForce && !Of(role).given_unit.empty()) ThrowNoColumn(role);
     if (!best) return;
+    const Column& of = table_.columns[*best];
+    if (role <= Role::kForce && of.goes_to_and_fro) NoteThatItMoves(*best, role);
     Take(*best, role);
     const std::size_t next = *best + 1;
-    if (role == Role::kNormalLoad && table_.columns[*best].greatest < 0) {
+    if (role == Role::kNormalLoad && of.greatest < 0) {
       Of(role).terms.front().weight = -1.0;
       Note("normal load {} is negative throughout: its magnitude is taken", table_.Label(*best));
-    } else if (role == Role::kTime && next < taken_.size() && table_.columns[*best].unit == "sec" &&
+    } else if (role == Role::kTime && next < taken_.size() && of.unit == "sec" &&
                LowerCase(table_.columns[next].name).ends_with("nanosec")) {
       Of(role).terms.push_back({next, 1e-9});  // of the same stamp
       Of(role).given_unit = "s";
@@ -132,56 +143,21 @@ class RoleAssigner {
     }
   }
 
-  /// The best column for the displacement, or the force, and its score: evidence, and whether it
-  /// goes to and fro.
-  struct Choice {
-    std::optional<std::size_t> column = {};
-    int score = 0;
-    std::optional<std::size_t> rival = {};  // of the same score
-    bool moves = false;
-  };
-
-  /// @param turns  whether it is to be an angle or a torque; empty where that does not matter
-  /// @param other  the column of the other role
-  Choice Best(Role role, std::optional<bool> turns, std::optional<std::size_t> other = {}) {
-    Choice best;
-    for (std::size_t column = 0; column < table_.columns.size(); ++column) {
+  /// Returns the columns that are taken and, for a displacement or a force, those that do not go
+  /// with the other one, as a torque with a length, unless all do not.
+  std::vector<bool> NotGoingWith(Role role) {
+    const Role other = kPair[role == kPair[0] ? 1 : 0];
+    if (role > Role::kForce || IsMissing(other)) return taken_;
+    const std::optional<bool> turns = ColumnOf(other).IsAngular(Of(other).given_unit);
+    std::vector<bool> barred = taken_;
+    bool has_any = false;
+    for (std::size_t column = 0; column < barred.size(); ++column) {
       const Column& of = table_.columns[column];
-      const bool is_given = !IsMissing(role) && column == Of(role).first_column();
-      const int evidence = EvidenceFor(of, role);
-      const bool is_free = IsMissing(role) && !taken_[column] && column != other && evidence > 0;
-      const std::optional<bool> is_angular = of.IsAngular(Of(role).given_unit);
-      if (!(is_given || is_free) || (turns && is_angular.value_or(*turns) != *turns)) continue;
-      // A column of text is taken where there is no other, and refused by its first row.
-      const int score = of.values.empty() ? 1 : evidence + (of.goes_to_and_fro ? kMoving : 0);
-      if (score == best.score) best.rival = column;
-      if (score > best.score || is_given) best = {column, score, {}, of.goes_to_and_fro};
+      const std::optional<bool> its = of.IsAngular(Of(role).given_unit);
+      if (turns && its && *turns != *its) barred[column] = true;
+      has_any = has_any || (!barred[column] && ScoreFor(of, role) > 0);
     }
-    return best;
-  }
-
-  /// Takes the displacement and the force of the most evidence: before all others two that go
-  /// together, then two that do not, of which one has no unit of its role.
-  void FindPair() {
-    constexpr int kBoth = 1'000'000;
-    constexpr int kMixed = kBoth / 2;
-    std::array<Choice, 2> best;
-    int most = -1;
-    for (const auto turns : {std::optional(false), std::optional(true), std::optional<bool>()}) {
-      const Choice x = Best(kPair[0], turns);
-      const Choice force = Best(kPair[1], turns, x.column);
-      const int score =
-          x.score + force.score + (x.column && force.column ? kBoth : 0) - (turns ? 0 : kMixed);
-      if (score > most) best = {x, force};
-      most = std::max(score, most);
-    }
-    for (const std::size_t k : {0U, 1U}) {
-      const auto& [column, score, rival, moves] = best.at(k);
-      if (!column || !IsMissing(kPair.at(k))) continue;
-      if (rival) table_.ThrowAmbiguous(kPair.at(k), *column, *rival);
-      if (moves) NoteThatItMoves(*column, kPair.at(k));
-      Take(*column, kPair.at(k));
-    }
+    return has_any ? barred : taken_;
   }
 
   /// Says so where a column that has as much evidence of a role is not taken, as it rests.
@@ -335,15 +311,18 @@ std::size_t ReadCovariate(const std::string& text, const CsvTable& table) {
 
 std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
                                       const std::vector<bool>& taken) {
-  std::optional<std::size_t> best;
+  std::optional<std::size_t> best, rival;
   int most = 0;
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
-    if ((!taken.empty() && taken[column]) || !table.columns[column].is_numeric) continue;
-    const int evidence = EvidenceFor(table.columns[column], role);
-    if (evidence <= most) continue;
-    most = evidence;
+    const bool is_free = taken.empty() || !taken[column];
+    const int score = is_free ? ScoreFor(table.columns[column], role) : 0;
+    if (score == most) rival = column;
+    if (score <= most) continue;
     best = column;
+    rival.reset();
+    most = score;
   }
+  if (best && rival && role <= Role::kForce) table.ThrowAmbiguous(role, *best, *rival);
   return best;
 }
 
