@@ -43,6 +43,9 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
+/// The unit of what is a force only when it is multiplied by a load, or a percentage of something.
+constexpr std::string_view kRatioUnit = "ratio";
+
 /// Beginnings of a factor behind a name, in lower case, that make its unit none.
 constexpr std::array<std::string_view, 10> kFactors = {"×",    "*0",    "*1",  " x0.", " x 0.",
                                                        " x10", " x 10", "1e-", " e-",  "%"};
@@ -115,7 +118,6 @@ void FindWord(Column& column) {
       column.word = entry;
       std::tie(column.role, column.rank, column.is_angular) =
           std::tie(row.role, row.rank, row.is_angular);
-      column.is_ratio = row.rank == kRatio;
     }
   }
   const auto has_any = [&](std::string_view list) {
@@ -123,7 +125,7 @@ void FindWord(Column& column) {
                                [&](auto word) { return MatchEnd(word, words) > 0; });
   };
   column.is_lesser = has_any(kLesserWords);
-  column.is_ratio = column.is_ratio || (column.unit.empty() && has_any(kRatios));
+  if (column.unit.empty() && (column.rank == kRatio || has_any(kRatios))) column.unit = kRatioUnit;
   column.other_words = CountWords(words) - std::min(CountWords(words), std::get<0>(best));
 }
 
@@ -307,8 +309,8 @@ void Observe(std::vector<Column>& columns) {
   for (Column& of : columns) {
     const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
                         of.greatest < kGreatestCoefficient;
-    if (may_be && (of.word == "friction" || of.word == "f")) of.is_ratio = true;
-    has_ratio = has_ratio || of.is_ratio;
+    if (may_be && (of.word == "friction" || of.word == "f")) of.unit = kRatioUnit;
+    has_ratio = has_ratio || of.unit == kRatioUnit || of.rank == kRatio;
     has_friction = has_friction || (of.names(Role::kForce) && of.rank == 0);
   }
   for (Column& of : columns) {

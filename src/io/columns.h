@@ -37,7 +37,6 @@ struct Column {
   int rank = 0;
   bool is_angular = false;
   bool is_lesser = false;       // commanded, raw or a statistic
-  bool is_ratio = false;        // without a unit: a coefficient of friction
   std::size_t other_words = 0;  // in the name
   // One a row; none in a column of text. NaN where the cell is empty or holds a mark of a missing
   // number, infinite where it or its row is at fault otherwise.

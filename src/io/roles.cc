@@ -43,7 +43,7 @@ int EvidenceFor(const Column& column, Role role) {
   }
   if (is_named) {
     const int others = std::min<int>(static_cast<int>(column.other_words), kStep - 1);
-    const bool may_be = (column.unit.empty() || is_of_unit) && !column.is_ratio;
+    const bool may_be = column.unit.empty() || is_of_unit;
     found += may_be ? kWord - kStep * column.rank - others : role <= Role::kForce ? 1 : 0;
   }
   return found > kLesser && column.is_lesser ? found - kLesser : found;
@@ -342,7 +342,7 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   std::string symbol = is_clock ? "s" : quantity.given_unit;
   const bool is_given = !symbol.empty();
   bool is_certain = is_given;
-  if (!is_given) symbol = of.is_ratio ? "1, of a ratio" : of.unit;
+  if (!is_given) symbol = of.unit;
   for (const Quantity::Term& term : quantity.terms) {
     const std::string& other = table.columns[term.column].unit;
     if (is_given || other == of.unit) continue;

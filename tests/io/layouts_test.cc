@@ -185,8 +185,8 @@ LVDT (5 mm),F [N] | 1 | 5 mm
 x [mm],Force cell 5 kN | 2 | 5 kN
 x [mm],Force (% FS) | 2 | % FS
 x [mm],Force % | 2 | %
-angle [rad],torque_percent | 2 | 1, of a ratio
-x [mm],Normalized force | 2 | 1, of a ratio
+angle [rad],torque_percent | 2 | ratio
+x [mm],Normalized force | 2 | ratio
 x [&micro;m],F [N] | 1 | &micro;m
 x [?m],F [N] | 1 | ?m
 )names";
@@ -236,10 +236,11 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
   for (const char* name : {"Coefficient of friction", "mu", "μ [-]", "COF", "Reibwert", "摩擦系数",
                            "Coeficiente de fricción", "Q/P", "Friction"}) {
     const std::string text = "x [mm]," + (name + rows);
-    EXPECT_THAT(Refusal(text, Choose("1", "2")),
-                AllOf(StartsWith("loop.csv:1:2: the unit '1, of a ratio' of '" + std::string(name) +
-                                 "' (column 2) is not known for the force"),
-                      HasSubstr("or with a factor '#2*0.001 [N]'")));
+    EXPECT_THAT(
+        Refusal(text, Choose("1", "2")),
+        AllOf(StartsWith("loop.csv:1:2: the unit '"),
+              HasSubstr(fmt::format("' of '{}' (column 2) is not known for the force", name)),
+              HasSubstr("or with a factor '#2*0.001 [N]'")));
     EXPECT_EQ(Read(text, Choose("1", "#2*50 [N]")).record.force.front(), 5.0);
     EXPECT_EQ(Read(text, Choose("1", "2 [N]")).record.force.front(), 0.1);
     EXPECT_EQ(Refusal(text), Refusal(text, Choose("1", "2"))) << "a load is no friction force";
@@ -248,11 +249,11 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
   for (const char* names :
        {"Load [N],Friction,x [mm]", "荷重(N),f,変位(mm)", "Last,Reibungszahl,Weg"}) {
     EXPECT_THAT(Refusal(names + std::string("\n50,0.1,0\n51,0.3,1\n50,-0.3,0\n")),
-                HasSubstr("of a ratio"))
+                HasSubstr("the unit 'ratio' of"))
         << names;
   }
   EXPECT_EQ(Read("x [mm],mu,Load [N]\n0,0.1,9\n1,0.3,-9\n0,0.1,9\n").force.index, 3U);
-  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("of a ratio"));
+  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("the unit 'ratio' of"));
 }
 
 TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
