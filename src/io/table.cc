@@ -179,19 +179,16 @@ class Reading {
   /// that.
   std::optional<Strings> HeaderCells(const Row& row) const {
     const bool by_blanks = layout_.delimiter == kBlanks;
-    // "Load 1" between blanks is words, of which few are numbers.
     const std::size_t numbers = row.Count(Cell::Kind::kNumber);
-    const bool is_text = numbers == 0 && row.Count(Cell::Kind::kText) >= 1;
-    const bool is_sentence =
-        by_blanks && row.kinds.front() == Cell::Kind::kText && 2 * numbers < row.kinds.size();
-    if (!is_text && !is_sentence) return std::nullopt;
     // Rows may lack the last column, as that of comments or events.
     const std::size_t columns = std::max(row.filled, rows_[data_].filled);
-    const std::size_t most = columns_ + (by_blanks ? 0 : 1);
-    if (is_text && columns <= row.cells.size() && columns <= most) {
+    const bool is_text = numbers == 0 && row.Count(Cell::Kind::kText) >= 1;
+    if (is_text && !by_blanks && columns <= std::min(row.cells.size(), columns_ + 1)) {
       return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
     }
-    return by_blanks || row.is_comment ? row.NamesByBlanks(columns_) : std::nullopt;
+    // "Load 1" between blanks is words, of which few are numbers.
+    const bool may_be = row.kinds.front() == Cell::Kind::kText && 2 * numbers < row.kinds.size();
+    return may_be && (by_blanks || row.is_comment) ? row.NamesByBlanks(columns_) : std::nullopt;
   }
 
   /// Looks for names and units: the row above the data, or, where that is no header or one of
@@ -330,9 +327,6 @@ std::string CsvTable::Label(std::size_t column) const {
 }
 
 std::string CsvTable::Listing() const {
-  if (std::ranges::all_of(columns, [](auto& column) { return column.header.empty(); })) {
-    return fmt::format("the file names none of its {} columns", columns.size());
-  }
   std::vector<std::string> listed;
   for (const Column& column : columns) {
     listed.push_back(fmt::format("'{}' ({})", ForMessage(column.header), listed.size() + 1));
@@ -393,42 +387,37 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
 }
 
 void TableReader::ReadRow(std::string_view row) {
-  const std::size_t columns = layout_.is_wanted.size();
+  const std::vector<bool>& is_wanted = layout_.is_wanted;
   const bool has_points = layout_.decimal_mark == '.';
   table_.lines.push_back(line_);
   CellCursor cells(row, layout_.delimiter);
-  std::size_t count = 0;
-  for (; count < columns && cells.has_next(); ++count) {
-    if (!layout_.is_wanted[count]) {
-      cells.Take();
+  std::size_t column = 0;
+  std::size_t excess = 0;  // the last column that the table has not
+  for (; cells.has_next(); ++column) {
+    if (column >= is_wanted.size() || !is_wanted[column]) {
+      if (!cells.Take().empty() && column >= is_wanted.size()) excess = column;
       continue;
     }
     double value = 0.0;
-    if (!has_points || !cells.TakeNumber(value)) value = ReadText(count, cells.Take());
-    table_.columns[count].values.push_back(value);
+    if (!has_points || !cells.TakeNumber(value)) value = ReadText(column, cells.Take());
+    table_.columns[column].values.push_back(value);
   }
-  std::string fault;  // of the row
-  for (std::size_t column = count; cells.has_next(); ++column) {
-    if (cells.Take().empty() || !fault.empty()) continue;
-    fault = At(column, fmt::format("one cell too many: the table has {} column{}{}", columns,
-                                   columns == 1 ? "" : "s",
-                                   layout_.delimiter == ','
-                                       ? "; leave out commas that separate thousands, and separate "
-                                         "the columns by ';' or tabs where commas are decimal marks"
-                                       : ""));
-  }
+  // A column that is not used may be absent.
+  while (column < is_wanted.size() && !is_wanted[column]) ++column;
   if (cells.is_open()) {
-    fault = fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
-                        table_.file, line_);
+    Break(fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
+                      table_.file, line_),
+          0);
+  } else if (excess > 0) {
+    const bool has_commas = layout_.delimiter == ',';
+    Break(At(excess, has_commas ? "one cell too many: leave out commas that separate thousands, "
+                                  "and separate the columns by ';' or tabs where commas are "
+                                  "decimal marks"
+                                : "one cell too many"),
+          0);
+  } else if (column < is_wanted.size()) {
+    Break(At(column, "the row ends before this column: complete it or remove it"), column);
   }
-  if (!fault.empty()) Break(fault, 0);
-  if (std::find(layout_.is_wanted.begin() + static_cast<std::ptrdiff_t>(count),
-                layout_.is_wanted.end(), true) == layout_.is_wanted.end()) {
-    return;
-  }
-  Break(At(count, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
-                              count == 1 ? "" : "s", columns)),
-        count);
 }
 
 /// Says what is at fault in the last row, from a column on.

@@ -96,7 +96,7 @@ const std::map<std::string, std::string> kEnds = {
      ": name every column, begin the line with '#' if it is a comment, or leave out commas that "
      "separate thousands"},
     {"kTooMany",
-     ": one cell too many: the table has 2 columns; leave out commas that separate thousands, "
+     ": one cell too many: leave out commas that separate thousands, "
      "and separate the columns by ';' or tabs where commas are decimal marks"},
 };
 // Broken files, and what is said of each of them as loop.csv.
@@ -119,8 +119,8 @@ x;F¶1,5;2¶3;4.5¶ | :2:1: '1,5' +kGroups
 x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write it like -1,5e-3, with one decimal mark
    throughout and none of thousands; where that is a comma, separate the columns by ';' or tabs, or
    remove the row
-x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row has 2 cells of 3: complete it or remove it
-#¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row has 1 cell of 2: complete it or remove it
+x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row ends before this column: complete it or remove it
+#¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row ends before this column: complete it or remove it
 x,F¶1,"2¶"¶3,4¶5,z¶ | :2: a quotation mark opened here is never closed in its line
 "x¶[mm]",F¶1,2¶3,4¶ | :1: a quotation mark opened here is never closed in its line
 x,F¶1,2¶3,4,5¶6,7¶ | :3:3 +kTooMany

@@ -125,8 +125,8 @@ TEST(RecordReader, NotesWhatItAssumes) {
 const std::string kFaults = R"faults(
 t,x,F¶1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the
    columns are 't' (1), 'x' (2), 'F' (3)
-1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the file
-   names none of its 3 columns
+1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the columns
+   are '' (1), '' (2), '' (3)
 t,x,F¶1,2,3¶ | - | 4 | : --force 4: there is no column 4: the file has 3 columns
 t,x,F¶1,2,3¶ | - | 0 | : --force 0: there is no column 0: the file has 3 columns
 t,x,F¶1,2,3¶ | x | 2 | : 'x' (column 2) is chosen for the force and for another quantity: choose

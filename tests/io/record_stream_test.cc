@@ -50,7 +50,7 @@ TEST(RecordStream, RefusesAsReadingWholeDoes) {
   EXPECT_THAT(Refusal("t [ms],x,F\n0,0,.5\n2,1,1\n\n1,2,2\n2,3,3\n"),
               StartsWith("loop.csv:5: has a time before"));
   EXPECT_THAT(Refusal(LongText(kManyRows) + "1,2\n"),
-              HasSubstr(fmt::format(":{}:3: the row has 2 cells of 3", kManyRows + 2)));
+              HasSubstr(fmt::format(":{}:3: the row ends before this column", kManyRows + 2)));
   EXPECT_THROW(RecordStream("/nonexistent/loop.csv"), InputError);
 }
 
