@@ -15,49 +15,49 @@ struct Entry {
   std::string_view symbol;
   double numerator;
   double denominator;
-  /// Other ways to write it, between blanks; in lower case they count in any.
+  /// Other ways to write it, each between blanks; in lower case they count in any.
   std::string_view words = {};
 };
 
 using enum Dimension;
 constexpr std::array kUnits = {
-    Entry{kLength, "m", 1, 1, "meter meters metre metres м"},
+    Entry{kLength, "m", 1, 1, " meter meters metre metres м "},
     Entry{kLength, "mm", 1, 1e3,
-          "MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм"},
+          " MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм "},
     Entry{kLength, "um", 1, 1e6,
-          "㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм"},
-    Entry{kLength, "nm", 1, 1e9, "㎚ nanometer nanometers"},
-    Entry{kLength, "cm", 1, 1e2, "㎝"},
-    Entry{kLength, "in", 254, 1e4, "inch inches \""},
-    Entry{kLength, "ft", 3048, 1e4, "feet"},
-    Entry{kLength, "mil", 254, 1e7, "mils thou"},
+          " ㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм "},
+    Entry{kLength, "nm", 1, 1e9, " ㎚ nanometer nanometers "},
+    Entry{kLength, "cm", 1, 1e2, " ㎝ "},
+    Entry{kLength, "in", 254, 1e4, " inch inches \" "},
+    Entry{kLength, "ft", 3048, 1e4, " feet "},
+    Entry{kLength, "mil", 254, 1e7, " mils thou "},
     Entry{kLength, "pm", 1, 1e12},
     // A mass that stands for a force is its weight.
-    Entry{kForce, "N", 1, 1, "newton newtons 牛 牛顿 Н"},
-    Entry{kForce, "mN", 1, 1e3, "millinewton millinewtons millin"},
+    Entry{kForce, "N", 1, 1, " newton newtons 牛 牛顿 Н "},
+    Entry{kForce, "mN", 1, 1e3, " millinewton millinewtons millin "},
     Entry{kForce, "uN", 1, 1e6},
-    Entry{kForce, "kN", 1e3, 1, "KN kilonewton kilonewtons 千牛 千牛顿 кН"},
+    Entry{kForce, "kN", 1e3, 1, " KN kilonewton kilonewtons 千牛 千牛顿 кН "},
     Entry{kForce, "MN", 1e6, 1},
-    Entry{kForce, "lbf", 4.4482216152605, 1, "lb lbs pound pounds"},
-    Entry{kForce, "kgf", 9.80665, 1, "kg ㎏ ㎏f kp кгс"},
-    Entry{kForce, "kip", 4448.2216152605, 1, "kips"},
-    Entry{kForce, "gf", 9.80665, 1e3, "g gram grams gramm"},
+    Entry{kForce, "lbf", 4.4482216152605, 1, " lb lbs pound pounds "},
+    Entry{kForce, "kgf", 9.80665, 1, " kg ㎏ ㎏f kp кгс "},
+    Entry{kForce, "kip", 4448.2216152605, 1, " kips "},
+    Entry{kForce, "gf", 9.80665, 1e3, " g gram grams gramm "},
     Entry{kForce, "daN", 10, 1},
-    Entry{kForce, "dyn", 1, 1e5, "dyne dynes"},
-    Entry{kForce, "ozf", 4.4482216152605, 16, "oz"},
+    Entry{kForce, "dyn", 1, 1e5, " dyne dynes "},
+    Entry{kForce, "ozf", 4.4482216152605, 16, " oz "},
     Entry{kForce, "cN", 1, 1e2},
-    Entry{kAngle, "rad", 1, 1, "radian radians"},
+    Entry{kAngle, "rad", 1, 1, " radian radians "},
     Entry{kAngle, "mrad", 1, 1e3},
-    Entry{kAngle, "deg", std::numbers::pi, 180, "° degree degrees 度"},
-    Entry{kAngle, "rev", 2 * std::numbers::pi, 1, "revolutions"},
+    Entry{kAngle, "deg", std::numbers::pi, 180, " ° degree degrees 度 "},
+    Entry{kAngle, "rev", 2 * std::numbers::pi, 1, " revolutions "},
     Entry{kTorque, "N m", 1, 1},
     Entry{kTorque, "N mm", 1, 1e3},
-    Entry{kTime, "s", 1, 1, "sec secs second seconds sek seg 秒 с"},
-    Entry{kTime, "ms", 1, 1e3, "msec 毫秒 milliseconds millis"},
-    Entry{kTime, "us", 1, 1e6, "usec micros"},
-    Entry{kTime, "ns", 1, 1e9, "nsec nanos"},
-    Entry{kTime, "min", 60, 1, "minute minutes"},
-    Entry{kTime, "h", 3600, 1, "hour hours hr"},
+    Entry{kTime, "s", 1, 1, " sec secs second seconds sek seg 秒 с "},
+    Entry{kTime, "ms", 1, 1e3, " msec 毫秒 milliseconds millis "},
+    Entry{kTime, "us", 1, 1e6, " usec micros "},
+    Entry{kTime, "ns", 1, 1e9, " nsec nanos "},
+    Entry{kTime, "min", 60, 1, " minute minutes "},
+    Entry{kTime, "h", 3600, 1, " hour hours hr "},
     Entry{kPressure, "Pa", 1, 1},
     Entry{kPressure, "hPa", 1e2, 1},
     Entry{kPressure, "kPa", 1e3, 1},
@@ -66,19 +66,8 @@ constexpr std::array kUnits = {
     Entry{kPressure, "mbar", 1e2, 1},
     Entry{kPressure, "bar", 1e5, 1},
     Entry{kPressure, "psi", 6894.757293168, 1},
-    Entry{kPressure, "kgf/cm2", 98066.5, 1, "kgf/cm²"},
+    Entry{kPressure, "kgf/cm2", 98066.5, 1, " kgf/cm² "},
 };
-
-/// True if one of the words between blanks is this.
-bool HasWord(std::string_view words, std::string_view word) {
-  for (std::size_t at = words.find(word); at != words.npos; at = words.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) {
-      return true;
-    }
-  }
-  return false;
-}
 
 /// "µ", which has two code points, and a power of ten, "10^-6 m", as the prefix that they are.
 std::string WithAsciiPrefix(std::string_view symbol) {
@@ -134,11 +123,12 @@ std::optional<double> InBaseOf(double value, std::string_view symbol, std::strin
 std::optional<Unit> FindUnit(std::string_view symbol) {
   if (symbol.empty()) return std::nullopt;
   const std::string ascii = WithAsciiPrefix(symbol);
-  const std::string lower = LowerCase(symbol);
+  const std::string word = " " + ascii + " ";
+  const std::string lower = LowerCase(word);
   const auto is_it = [&](const Entry& entry) {
     // A single letter, or two, differ by their case: g and G, mN and MN.
-    return entry.symbol == ascii || HasWord(entry.words, ascii) ||
-           (symbol.size() >= 3 && HasWord(entry.words, lower));
+    return entry.symbol == ascii || entry.words.find(word) != word.npos ||
+           (symbol.size() >= 3 && entry.words.find(lower) != word.npos);
   };
   const auto* const entry = std::ranges::find_if(kUnits, is_it);
   if (entry == kUnits.end()) return FindProduct(ascii);

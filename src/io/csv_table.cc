@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iomanip>
 #include <iterator>
+#include <sstream>
 
 #include "mindahl/core/error.h"
 
@@ -13,12 +15,9 @@ std::string CsvCell(const std::string& text) {
   const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
                      !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
   if (plain) return text;
-  std::string quoted = "\"";
-  for (const char character : text) {
-    if (character == '"') quoted += '"';
-    quoted += character;
-  }
-  return quoted + '"';
+  std::ostringstream quoted;
+  quoted << std::quoted(text, '"', '"');
+  return quoted.str();
 }
 
 std::string CsvText(const std::vector<CsvColumn>& columns) {

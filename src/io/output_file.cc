@@ -38,8 +38,8 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const std::string plain = path.lexically_normal().string();
   const bool is_device = plain.starts_with("/dev/") || plain.starts_with("/proc/");
   const bool replaces = !is_device && (!is_old || std::filesystem::is_regular_file(old));
-  const bool is_link = replaces && is_old && std::filesystem::is_symlink(path, error);
-  const std::filesystem::path target = is_link ? std::filesystem::canonical(path) : path;
+  // A link stays one.
+  const std::filesystem::path target = replaces && is_old ? std::filesystem::canonical(path) : path;
   const std::string name = TemporaryNameOf(target);
   int file = -1;
   int fault = replaces ? OpenFile(name, Opening::kNew, file)

@@ -84,13 +84,10 @@ class Axis {
     }
     from_ -= margin * span;
     to_ += margin * span;
-    constexpr double kFewDecades = 0.8;  // has even tics too
-    if (!is_logarithmic) {
-      PlaceTics(from_, to_);
-    } else if (to_ - from_ < kFewDecades) {
-      PlaceTics(std::pow(10.0, from_), std::pow(10.0, to_));
-    } else {
+    if (is_logarithmic) {
       PlaceTicsOfPowers();
+    } else {
+      PlaceTics();
     }
   }
 
@@ -103,26 +100,28 @@ class Axis {
     return is_logarithmic_ ? std::log10(value) : value;
   }
 
-  void PlaceTics(double from, double to) {
+  void PlaceTics() {
     constexpr double kTics = 5.5;
     constexpr double kShortest = 0.75;  // of the distance between that many
-    const double rough = (to - from) / kTics;
+    const double rough = (to_ - from_) / kTics;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
     double step = 10 * power;
     for (const double multiple : {5.0, 2.0, 1.0}) {
       if (multiple * power >= kShortest * rough) step = multiple * power;
     }
-    for (double k = std::ceil(from / step); k * step <= to; ++k) tics.push_back(k * step);
+    for (double k = std::ceil(from_ / step); k * step <= to_; ++k) tics.push_back(k * step);
   }
 
+  /// Places them at powers of ten, of few decades also at 2 and 5, of a part of one at all digits.
   void PlaceTicsOfPowers() {
-    constexpr double kManyDecades = 2.5;
-    const double step = std::ceil((to_ - from_) / 8);
+    const double decades = to_ - from_;
+    const double step = std::ceil(decades / 8);
     for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
-      for (const double multiple : {1.0, 2.0, 5.0}) {
-        const double at = power + std::log10(multiple);
-        const bool is_one = multiple == 1 || to_ - from_ < kManyDecades;
-        if (is_one && at >= from_ && at <= to_) tics.push_back(multiple * std::pow(10.0, power));
+      for (int digit = 1; digit < 10; ++digit) {
+        const double at = power + std::log10(digit);
+        const bool is_one =
+            digit == 1 || decades < 0.8 || ((digit == 2 || digit == 5) && decades < 2.5);
+        if (is_one && at >= from_ && at <= to_) tics.push_back(digit * std::pow(10.0, power));
       }
     }
   }
