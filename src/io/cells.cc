@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cstdio>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -32,32 +33,24 @@ bool IsMissingMark(std::string_view text) {
 /// date, whose order is not certain, the time of day alone counts.
 std::optional<double> ReadClock(std::string text) {
   std::ranges::replace(text, ',', '.');
-  std::string_view rest = text;
+  int year = 0, place = 0;
+  unsigned month = 0, day = 0, hour = 0, minute = 0;
   double seconds = 0.0;
-  if (const std::size_t end = rest.find_first_of("T "); end != rest.npos) {
-    const std::vector<std::string_view> date = PartsOf(rest.substr(0, end), '-');
-    const auto year = NumberIn<int>(date.front());
-    const auto month = NumberIn<unsigned>(date[date.size() / 2]);
-    const auto day = NumberIn<unsigned>(date.back());
-    if (date.size() == 3 && year > 99 && month && day) {
-      const std::chrono::year_month_day of{std::chrono::year(*year), std::chrono::month(*month),
-                                           std::chrono::day(*day)};
-      if (!of.ok()) return std::nullopt;
-      seconds = kDay * static_cast<double>(std::chrono::sys_days(of).time_since_epoch().count());
-    }
-    rest = Trimmed(rest.substr(end + 1));
+  if (std::sscanf(text.c_str(), "%4d-%2u-%2u%*1[T ]%n", &year, &month, &day, &place) == 3) {
+    const std::chrono::year_month_day of{std::chrono::year(year), std::chrono::month(month),
+                                         std::chrono::day(day)};
+    if (!of.ok()) return std::nullopt;
+    seconds = kDay * static_cast<double>(std::chrono::sys_days(of).time_since_epoch().count());
   }
-  // The zone behind it is the same in all rows.
-  const std::vector<std::string_view> parts =
-      PartsOf(rest.substr(0, rest.find_first_of("Z+")), ':');
-  double unit = 3600.0;
-  for (const std::string_view part : parts) {
-    const auto number = NumberIn<double>(part);
-    if (!number || !(*number >= 0 && *number < 61)) return std::nullopt;  // 60 in one that leaps
-    seconds += unit * *number;
-    unit /= 60;
-  }
-  return parts.size() == 3 ? std::optional(seconds) : std::nullopt;
+  text.erase(0, text.find_first_of("T ") + 1);
+  text.resize(std::min(text.find_first_of("Z+"), text.size()));  // a zone is that of all rows
+  place = 0;
+  std::sscanf(text.c_str(), "%2u:%2u:%n", &hour, &minute, &place);
+  const auto second = NumberIn<double>(std::string_view(text).substr(place));
+  // 60 in a minute that leaps.
+  if (place == 0 || std::max(hour, minute) > 60 || !second || !(*second >= 0 && *second < 61))
+    return std::nullopt;
+  return seconds + 3600.0 * hour + 60.0 * minute + *second;
 }
 
 }  // namespace

@@ -104,6 +104,11 @@ TEST(LoggerFile, MayHaveTimesOfDay) {
                    "2\n2022-01-03 12:30:00,2,3\n")
                   .record.time,
               ElementsAre(0, 0.75, 217'800.5));
+  for (const char* time :
+       {"-1:00:00", "1:-2:00", "1:00", "1:00:-1", "1:00:99", "2024-13-01 1:00:00"}) {
+    EXPECT_THAT(Refusal(fmt::format("Time,x [mm],F [N]\n0:00:00,0,1\n{},0,1\n0:00:09,1,2\n", time)),
+                StartsWith("loop.csv:3:1: '" + std::string(time)));
+  }
   EXPECT_THAT(Refusal("Time,x [mm],F [N]\n11:00:02,0,1\n11:00:01,1,2\n"),
               StartsWith("loop.csv:3: has a time"));
 }
