@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <utility>
 
 #include "io/roles.h"
@@ -21,12 +22,15 @@ void RequireNoSignBit(const CsvTable& table, const Quantity& quantity) {
   constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
   const Column& of = table.columns[column];
-  if (of.least < 0 || of.least >= kBit / 2 || of.greatest < kBit || of.greatest >= 2 * kBit) return;
-  double below = 0.0;
-  for (const double value : of.values) {
-    if (std::isfinite(value) && value != std::floor(value)) return;
-    if (value < kBit) below = std::max(below, value);
+  const auto is_part = [](double value) {
+    return std::isfinite(value) && value != std::floor(value);
+  };
+  const auto is_low = [](double value) { return value < kBit; };
+  if (of.least < 0 || of.least >= kBit || of.greatest < kBit || of.greatest >= 2 * kBit ||
+      std::ranges::any_of(of.values, is_part)) {
+    return;
   }
+  const double below = std::ranges::max(of.values | std::views::filter(is_low));
   if (below >= kBit / 2) return;
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
@@ -263,12 +267,10 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
     }
     Column& added = table.columns.emplace_back(ReadName(name));
     added.values.assign(values.begin(), values.end());
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      if (std::isfinite(values[row])) continue;
-      std::string& said = std::isnan(values[row]) ? added.missing : added.broken;
-      if (!said.empty()) continue;
-      said = fmt::format("{}:{}:{}: holds no number", table.file, row + 1, table.columns.size());
-    }
+    const auto fault = std::ranges::find_if(values, [](double of) { return !std::isfinite(of); });
+    added.missing = fmt::format("{}:{}:{}: holds no number", table.file, fault - values.begin() + 1,
+                                table.columns.size());
+    added.broken = added.missing;
   }
   Observe(table.columns);
   return RecordIn(table, asked);

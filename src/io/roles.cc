@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "core/refuse.h"
@@ -330,50 +331,45 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
                 std::vector<std::string>& notes) {
   const RoleRules& rules = RulesOf(quantity.role);
   const Dimension dimension = is_torsional ? rules.angular : rules.linear;
-  const std::string& file = table.file;
   const std::size_t first = quantity.first_column();
   const Column& of = table.columns[first];
   const std::string label = table.Label(first);
   const bool is_time = quantity.role == Role::kTime;
-  const bool is_clock = is_time && of.is_clock;
-  const std::string of_stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
+  const bool is_given = !quantity.given_unit.empty() || (is_time && of.is_clock);
+  std::string stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
+  if (is_time && of.is_clock) stamp = quantity.given_unit = "s";
+  std::set<std::string> stated;
+  for (const Quantity::Term& term : quantity.terms) {
+    stated.insert(is_given ? quantity.given_unit : table.columns[term.column].unit);
+  }
+  const std::string symbol = fmt::format("{}", fmt::join(stated, " and "));
   const std::string symbols = UnitSymbols(dimension);
   std::string assumed = symbols.substr(0, symbols.find(','));
-  std::string symbol = is_clock ? "s" : quantity.given_unit;
-  const bool is_given = !symbol.empty();
-  bool is_certain = is_given;
-  if (!is_given) symbol = of.unit;
-  for (const Quantity::Term& term : quantity.terms) {
-    const std::string& other = table.columns[term.column].unit;
-    if (is_given || other == of.unit) continue;
-    symbol += fmt::format(" and {}", other);
-    is_certain = true;
-  }
   const auto unit = FindUnit(symbol);
   const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
   if (unit &&
       (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear))) {
     quantity.unit = *unit;
-  } else if (is_certain || (!symbol.empty() && !quantity.is_scaled)) {
+  } else if (is_given || stated.size() > 1 || (!symbol.empty() && !quantity.is_scaled)) {
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",
-        is_given ? file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
+        is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
         rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
   } else {
     if (symbol.empty()) {
       quantity.has_no_unit = true;
-      if (!of_stamp.empty()) assumed = of_stamp;
+      if (!stamp.empty()) assumed = stamp;
       notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                  file, rules.name, label, assumed, rules.option, first + 1,
+                                  table.file, rules.name, label, assumed, rules.option, first + 1,
                                   assumed));
     }
     quantity.unit = *FindUnit(assumed);
   }
-  if (!is_clock && (of_stamp.empty() || of_stamp != quantity.unit.symbol)) return;
+  if (stamp.empty() || stamp != quantity.unit.symbol) return;
   quantity.offset -= of.first;
-  notes.push_back(
-      fmt::format("{}: time {} holds dates or times of day: counted from the first", file, label));
+  notes.push_back(fmt::format("{}: time {} holds dates or times of day: counted from the first",
+                              table.file, label));
 }
 
 std::vector<Quantity> AssignRoles(const CsvTable& table, const RecordColumns& asked,

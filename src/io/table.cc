@@ -328,8 +328,8 @@ std::string CsvTable::Label(std::size_t column) const {
 
 std::string CsvTable::Listing() const {
   std::vector<std::string> listed;
-  for (const Column& column : columns) {
-    listed.push_back(fmt::format("'{}' ({})", ForMessage(column.header), listed.size() + 1));
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    listed.push_back(Label(column));
   }
   return fmt::format("the columns are {}", fmt::join(listed, ", "));
 }

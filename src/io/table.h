@@ -31,7 +31,7 @@ struct CsvTable {
   [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
   /// "'x [mm]' (column 2)", or "column 2" without a header.
   [[nodiscard]] std::string Label(std::size_t column) const;
-  /// "the columns are 'x' (1), 'F' (2)".
+  /// "the columns are 'x' (column 1), 'F' (column 2)".
   [[nodiscard]] std::string Listing() const;
   /// "file:line" of the header.
   [[nodiscard]] std::string Header() const;

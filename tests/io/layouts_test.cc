@@ -223,7 +223,7 @@ TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
       Refusal("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n"),
       StartsWith("loop.csv:2:2: 'Load' (column 2) only grows while 'x [mm]' (column 1) goes "
                  "to and fro, as a clock or a counter does: choose the force with --force, "
-                 "by name or number: the columns are 'x [mm]' (1), 'Load' (2)"));
+                 "by name or number: the columns are 'x [mm]' (column 1), 'Load' (column 2)"));
   EXPECT_THAT(Refusal("Position [mm],Present Load\n0,3\n1,121\n-1,1025\n1,1100\n2,7\n"),
               HasSubstr("'Present Load' (column 2) holds no value between 121 and 1023, as a "
                         "register whose bit 1024 is the sign of the force"));

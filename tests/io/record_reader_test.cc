@@ -124,9 +124,9 @@ TEST(RecordReader, NotesWhatItAssumes) {
 // A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
 const std::string kFaults = R"faults(
 t,x,F¶1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the
-   columns are 't' (1), 'x' (2), 'F' (3)
+   columns are 't' (column 1), 'x' (column 2), 'F' (column 3)
 1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the columns
-   are '' (1), '' (2), '' (3)
+   are column 1, column 2, column 3
 t,x,F¶1,2,3¶ | - | 4 | : --force 4: there is no column 4: the file has 3 columns
 t,x,F¶1,2,3¶ | - | 0 | : --force 0: there is no column 0: the file has 3 columns
 t,x,F¶1,2,3¶ | x | 2 | : 'x' (column 2) is chosen for the force and for another quantity: choose
@@ -137,7 +137,7 @@ x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the d
    one by its number, as --displacement 1
 x [mm],x [V],F¶1,2,3¶ | x | - | :1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the
    displacement: choose one by its number, as --displacement 1
-x¶1¶ | - | - | : no column for the force: the columns are 'x' (1): choose it with --force, by name
+x¶1¶ | - | - | : no column for the force: the columns are 'x' (column 1): choose it with --force, by name
    or number
 x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
    must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]', or with a factor
@@ -159,7 +159,7 @@ angle,F¶1,2¶ | - | [kN] | : the unit 'kN' of 'F' (column 2) is not known for t
    '#2*0.001 [N m]'
 left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
    and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
-   number: the columns are 'left' (1), 'F' (2)
+   number: the columns are 'left' (column 1), 'F' (column 2)
 time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6: has a time
    before that of the row above: sort the rows, split the file where a clock starts again, or give
    --sample-rate
@@ -267,7 +267,7 @@ TEST(Covariates, ThatCannotBeAreRefusedByName) {
   };
   EXPECT_EQ(refusal({"q"}),
             "loop.csv: --covariate q: no column is called 'q' (for the covariate): the columns are "
-            "'x [m]' (1), 'F [N]' (2), 'p' (3)");
+            "'x [m]' (column 1), 'F [N]' (column 2), 'p' (column 3)");
   EXPECT_EQ(refusal({"p", "3"}),
             "loop.csv: 'p' (column 3) is used already: choose another column for the covariate");
   EXPECT_EQ(
