@@ -52,11 +52,13 @@ int EvidenceFor(const Column& column, Role role) {
 
 /// Returns how well a column suits a role: 0 is not at all. What goes to and fro is a displacement
 /// or a force before what rests.
-int ScoreFor(const Column& column, Role role) {
+/// @param turns  whether it is to be an angle or a torque, where that is known
+int ScoreFor(const Column& column, Role role, std::optional<bool> turns) {
   const int evidence = EvidenceFor(column, role);
   if (role > Role::kForce || evidence == 0) return column.is_numeric ? evidence : 0;
-  // A column of text is taken where there is no other, and refused by its first row.
-  return column.values.empty() ? 1 : evidence + (column.goes_to_and_fro ? kMoving : 0);
+  // A column of text, or of the other kind, is taken where there is no other, and refused.
+  const bool is_other = turns && column.IsAngular("").value_or(*turns) != *turns;
+  return is_other || column.values.empty() ? 1 : evidence + (column.goes_to_and_fro ? kMoving : 0);
 }
 
 /// Returns the unit in which a number is a stamp since 1970, "" where it is none.
@@ -89,7 +91,8 @@ class RoleAssigner {
       }
     }
     const std::array is_found = {IsMissing(kPair[0]), IsMissing(kPair[1])};
-    for (const Role role : kPair) TakeBest(role);
+    const bool turns = SuitAsAngleAndTorque();
+    for (const Role role : kPair) TakeBest(role, turns);
     if (!asked.sample_rate) TakeBest(Role::kTime);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     for (const std::string& covariate : asked.covariates) {
@@ -123,10 +126,29 @@ class RoleAssigner {
     notes_.push_back(file_ + ": " + fmt::format(text, std::forward<Parts>(parts)...));
   }
 
+  /// True if the columns suit an angle and a torque better than a displacement and a force.
+  bool SuitAsAngleAndTorque() {
+    std::array<int, 2> scores{};
+    for (const bool turns : {false, true}) {
+      for (const Role role : kPair) {
+        int most = 0;  // 1 is that of a column of the other kind
+        for (std::size_t column = 0; column < taken_.size(); ++column) {
+          if (taken_[column] || !IsMissing(role)) continue;
+          most = std::max(most, ScoreFor(table_.columns[column], role, turns));
+        }
+        const bool is_given =
+            !IsMissing(role) &&
+            ColumnOf(role).IsAngular(Of(role).given_unit).value_or(turns) == turns;
+        if (is_given || most > 1) scores[turns ? 1 : 0] += 10 * kMoving + most;
+      }
+    }
+    return scores[1] > scores[0];
+  }
+
   /// Takes the column with the best evidence, where none is given.
-  void TakeBest(Role role) {
+  void TakeBest(Role role, std::optional<bool> turns = {}) {
     if (!IsMissing(role)) return;
-    const std::optional<std::size_t> best = BestColumn(table_, role, NotGoingWith(role));
+    const std::optional<std::size_t> best = BestColumn(table_, role, taken_, turns);
     if (!best && role > Role::kForce && !Of(role).given_unit.empty()) ThrowNoColumn(role);
     if (!best) return;
     const Column& of = table_.columns[*best];
@@ -142,23 +164,6 @@ class RoleAssigner {
       Of(role).given_unit = "s";
       taken_[next] = true;
     }
-  }
-
-  /// Returns the columns that are taken and, for a displacement or a force, those that do not go
-  /// with the other one, as a torque with a length, unless all do not.
-  std::vector<bool> NotGoingWith(Role role) {
-    const Role other = kPair[role == kPair[0] ? 1 : 0];
-    if (role > Role::kForce || IsMissing(other)) return taken_;
-    const std::optional<bool> turns = ColumnOf(other).IsAngular(Of(other).given_unit);
-    std::vector<bool> barred = taken_;
-    bool has_any = false;
-    for (std::size_t column = 0; column < barred.size(); ++column) {
-      const Column& of = table_.columns[column];
-      const std::optional<bool> its = of.IsAngular(Of(role).given_unit);
-      if (turns && its && *turns != *its) barred[column] = true;
-      has_any = has_any || (!barred[column] && ScoreFor(of, role) > 0);
-    }
-    return has_any ? barred : taken_;
   }
 
   /// Says so where a column that has as much evidence of a role is not taken, as it rests.
@@ -311,12 +316,12 @@ std::size_t ReadCovariate(const std::string& text, const CsvTable& table) {
 }
 
 std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
-                                      const std::vector<bool>& taken) {
+                                      const std::vector<bool>& taken, std::optional<bool> turns) {
   std::optional<std::size_t> best, rival;
   int most = 0;
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     const bool is_free = taken.empty() || !taken[column];
-    const int score = is_free ? ScoreFor(table.columns[column], role) : 0;
+    const int score = is_free ? ScoreFor(table.columns[column], role, turns) : 0;
     if (score == most) rival = column;
     if (score <= most) continue;
     best = column;

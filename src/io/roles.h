@@ -48,8 +48,11 @@ std::size_t ReadCovariate(const std::string& text, const CsvTable& table);
 
 /// Returns the column with the best evidence for a role; none where none has any.
 /// @param taken  columns that are none of the role's; none where it is empty
+/// @param turns  whether a displacement is to be an angle, or a force a torque
+/// @throws InputError where two have as much for a displacement or a force
 std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
-                                      const std::vector<bool>& taken = {});
+                                      const std::vector<bool>& taken = {},
+                                      std::optional<bool> turns = {});
 
 /// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
 /// @throws InputError for a unit that is none of the role's, and for columns in several units
