@@ -28,18 +28,7 @@ double NormalQuantile(double confidence) {
 }
 
 double StudentQuantile(double degrees_of_freedom, double confidence) {
-  struct Asked {
-    double degrees_of_freedom = 0.0;
-    double confidence = 0.0;
-    double quantile = 0.0;
-  };
-  // Cycle after cycle of a campaign asks for the same.
-  thread_local Asked last;
-  if (last.degrees_of_freedom != degrees_of_freedom || last.confidence != confidence) {
-    last = {degrees_of_freedom, confidence,
-            boost::math::quantile(StudentsT(degrees_of_freedom), (1 + confidence) / 2)};
-  }
-  return last.quantile;
+  return boost::math::quantile(StudentsT(degrees_of_freedom), (1 + confidence) / 2);
 }
 
 double PValueOfT(double t, double degrees_of_freedom) {
@@ -48,11 +37,6 @@ double PValueOfT(double t, double degrees_of_freedom) {
 
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) {
   return Above(FisherF(numerator_degrees, degrees_of_freedom), f);
-}
-
-double FQuantile(double numerator_degrees, double degrees_of_freedom, double chance) {
-  return boost::math::quantile(
-      boost::math::complement(FisherF(numerator_degrees, degrees_of_freedom), chance));
 }
 
 double PValueOfChiSquared(double x, double degrees_of_freedom) {

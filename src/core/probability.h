@@ -5,9 +5,6 @@ namespace mindahl {
 // Distributions of test statistics, in double precision: relative errors of some 1e-14. Compiled
 // once, as the templates behind them take seconds in every source that uses them.
 
-/// Two-sided 95 % quantile of the standard normal distribution, Φ⁻¹(0.975).
-inline constexpr double kNormalQuantile95 = 1.959963984540054;
-
 /// Returns Φ⁻¹((1 + confidence)/2), within which a normal law lies with this probability.
 double NormalQuantile(double confidence);
 
@@ -18,8 +15,6 @@ double PValueOfT(double t, double degrees_of_freedom);
 
 /// P(F(k, ν) > f)
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
-/// P(F(k, ν) > f) = chance at f
-double FQuantile(double numerator_degrees, double degrees_of_freedom, double chance);
 
 /// P(χ²(k) > x)
 double PValueOfChiSquared(double x, double degrees_of_freedom);

@@ -158,7 +158,7 @@ std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
   // What is known does not depend on the confidence that is asked for.
-  const double to_95 = kNormalQuantile95 / NormalQuantile(result.confidence);
+  const double to_95 = NormalQuantile(0.95) / NormalQuantile(result.confidence);
   for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {

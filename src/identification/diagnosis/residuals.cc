@@ -111,7 +111,7 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   const double mean_square = squares / samples;
   if (parts == 0 || !(within > 0) || !(mean_square > 0)) return structure;
   const double ratio = between / parts / (within / degrees_within);
-  if (ratio >= FQuantile(parts, degrees_within, thresholds.rare_chance)) {
+  if (PValueOfF(ratio, parts, degrees_within) <= thresholds.rare_chance) {
     structure.repeatable_share = std::clamp(systematic / parts / mean_square, 0.0, 1.0);
   }
   return structure;
