@@ -120,17 +120,10 @@ Cell ReadCell(std::string_view text, char decimal_mark) {
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
-std::string DescribeCellFault(std::string_view text, Cell::Kind kind, char decimal_mark) {
-  const bool has_other_mark = text.find(decimal_mark == ',' ? '.' : ',') != text.npos;
-  const std::string remedy =
-      kind == Cell::Kind::kMissing
-          ? "fill in the cell"
-          : fmt::format("write it like -1{}5e-3{},", decimal_mark,
-                        has_other_mark
-                            ? ", with one decimal mark throughout and none of thousands; where "
-                              "that is a comma, separate the columns by ';' or tabs"
-                            : "");
-  return fmt::format("'{}' is not a number: {} or remove the row", ForMessage(text), remedy);
+std::string DescribeCellFault(std::string_view text, char decimal_mark) {
+  return fmt::format(
+      "'{}' is not a number: write it like -1{}5e-3, with no other mark, or remove the row",
+      ForMessage(text), decimal_mark);
 }
 
 }  // namespace mindahl::io

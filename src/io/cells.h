@@ -102,6 +102,6 @@ struct Cell {
 Cell ReadCell(std::string_view text, char decimal_mark);
 
 /// Describes the fault of a cell that should hold a number, and the remedy.
-std::string DescribeCellFault(std::string_view text, Cell::Kind kind, char decimal_mark);
+std::string DescribeCellFault(std::string_view text, char decimal_mark);
 
 }  // namespace mindahl::io

@@ -78,12 +78,7 @@ class RecordBuilder {
                             .has_no_unit = quantity.has_no_unit};
     }
     file_.is_torsional = quantities_.front().unit.dimension == Dimension::kAngle;
-    if (file_.time) return;
-    interval_ = rate ? 1.0 / *rate : table.interval;
-    if (table.interval > 0 && !rate) {
-      file_.notes.push_back(fmt::format("{}: has no time: its header states {} s between rows",
-                                        table.file, table.interval));
-    }
+    if (!file_.time) interval_ = rate ? 1.0 / *rate : table.interval;
   }
 
   /// Returns the columns, units, notes and the rows left out so far, without samples.
@@ -95,7 +90,7 @@ class RecordBuilder {
   /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples) {
-    const bool has_interval = !file_.time && interval_ > 0;
+    const bool has_interval = interval_ > 0;
     const auto resize = [&](std::size_t size) {
       samples.lines.resize(size);
       if (has_interval) samples.time.resize(size);
@@ -220,9 +215,6 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other) {
   }
   table.columns.insert(table.columns.end(), other.columns.begin(), other.columns.end());
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
-  table.notes.push_back(
-      fmt::format("{}: its columns follow those of {}, row by row", other.file, table.file));
-  table.header_line = std::max<std::size_t>(table.header_line, 1);
   Observe(table.columns);
 }
 
@@ -349,8 +341,6 @@ void KeepTimeWindow(RecordFile& input, double first, double last) {
     Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", input.name,
            first, last, time.front(), time.back());
   }
-  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s",
-                                    input.name, end - begin, time.size(), first, last));
   KeepSamples(input, static_cast<std::size_t>(begin - time.begin()),
               static_cast<std::size_t>(end - time.begin()));
 }

@@ -371,10 +371,7 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
     }
     quantity.unit = *FindUnit(assumed);
   }
-  if (stamp.empty() || stamp != quantity.unit.symbol) return;
-  quantity.offset -= of.first;
-  notes.push_back(fmt::format("{}: time {} holds dates or times of day: counted from the first",
-                              table.file, label));
+  if (!stamp.empty() && stamp == quantity.unit.symbol) quantity.offset -= of.first;
 }
 
 std::vector<Quantity> AssignRoles(const CsvTable& table, const RecordColumns& asked,

@@ -242,8 +242,8 @@ class Reading {
       const Row& row = rows_[data_ - 1];
       Refuse(
           "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-          "every column, begin the line with '#' if it is a comment, or leave out commas that "
-          "separate thousands",
+          "every column, begin the line with '#' if it is a comment, or remove commas within "
+          "numbers",
           table.file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
           rows_[data_].line);
     }
@@ -322,7 +322,7 @@ std::optional<std::size_t> CsvTable::Named(std::string_view name, Role role) con
 
 std::string CsvTable::Label(std::size_t column) const {
   const std::string& name = columns[column].header;
-  if (header_line == 0 || name.empty()) return fmt::format("column {}", column + 1);
+  if (name.empty()) return fmt::format("column {}", column + 1);
   return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
 }
 
@@ -409,12 +409,7 @@ void TableReader::ReadRow(std::string_view row) {
                       table_.file, line_),
           0);
   } else if (excess > 0) {
-    const bool has_commas = layout_.delimiter == ',';
-    Break(At(excess, has_commas ? "one cell too many: leave out commas that separate thousands, "
-                                  "and separate the columns by ';' or tabs where commas are "
-                                  "decimal marks"
-                                : "one cell too many"),
-          0);
+    Break(At(excess, "one cell too many: remove it, or commas within numbers"), 0);
   } else if (column < is_wanted.size()) {
     Break(At(column, "the row ends before this column: complete it or remove it"), column);
   }
@@ -439,7 +434,7 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
   if (cell.kind == Cell::Kind::kNumber) return cell.value;
   const bool is_missing = cell.kind == Cell::Kind::kMissing;
   std::string& said = is_missing ? of.missing : of.broken;
-  if (said.empty()) said = At(column, DescribeCellFault(text, cell.kind, layout_.decimal_mark));
+  if (said.empty()) said = At(column, DescribeCellFault(text, layout_.decimal_mark));
   return is_missing ? cell.value : kBroken;
 }
 
@@ -456,8 +451,7 @@ bool TableReader::IsText(std::string_view row) {
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;
   text_line_ = line_;
-  text_fault_ =
-      At(layout_.text_column, DescribeCellFault(cell, Cell::Kind::kText, layout_.decimal_mark));
+  text_fault_ = At(layout_.text_column, DescribeCellFault(cell, layout_.decimal_mark));
   if (!layout_.names_row.empty()) {
     text_fault_ += fmt::format(
         "; a further block of rows must have the columns of line {} above it", table_.header_line);

@@ -84,20 +84,14 @@ TEST(CsvTable, IsTheSameInEveryFormat) {
 
 // Ends of what is said of broken files.
 const std::map<std::string, std::string> kEnds = {
-    {"kWrite", " is not a number: write it like -1.5e-3, or remove the row"},
-    {"kGroups",
-     " is not a number: write it like -1.5e-3, with one decimal mark throughout and none of "
-     "thousands; where that is a comma, separate the columns by ';' or tabs, or remove the row"},
-    {"kFill", " is not a number: fill in the cell or remove the row"},
+    {"kWrite", " is not a number: write it like -1.5e-3, with no other mark, or remove the row"},
     {"kExpected",
      ": expected columns of numbers under an optional header, between tabs, ';', blanks, or commas "
      "where these are no decimal marks"},
     {"kName",
-     ": name every column, begin the line with '#' if it is a comment, or leave out commas that "
-     "separate thousands"},
-    {"kTooMany",
-     ": one cell too many: leave out commas that separate thousands, "
-     "and separate the columns by ';' or tabs where commas are decimal marks"},
+     ": name every column, begin the line with '#' if it is a comment, or remove commas within "
+     "numbers"},
+    {"kTooMany", ": one cell too many: remove it, or commas within numbers"},
 };
 // Broken files, and what is said of each of them as loop.csv.
 const std::string kFaults = R"faults(
@@ -105,19 +99,18 @@ const std::string kFaults = R"faults(
 Dear Sir,¶yours, truly¶ | :2: none of the first 2 rows has numbers, nor has 'yours, truly' +kExpected
 x,F¶1,2¶3,abc¶ | :3:2: 'abc' +kWrite
 x,F¶1,2¶3 mm,4¶ | :3:1: '3 mm' +kWrite
-x,F¶1,2¶nan,4¶ | :3:1: 'nan' +kFill
-NaN,2¶1,2¶ | :1:1: 'NaN' +kFill
+x,F¶1,2¶nan,4¶ | :3:1: 'nan' +kWrite
+NaN,2¶1,2¶ | :1:1: 'NaN' +kWrite
 x,F¶1,2¶3,-inf¶ | :3:2: '-inf' +kWrite
 x,F¶1,2¶3,0x1F¶ | :3:2: '0x1F' +kWrite
-x,F¶1,2¶3,"1,234.5"¶ | :3:2: '1,234.5' +kGroups
-x;F¶1;2¶3;1.234,5¶ | :3:2: '1.234,5' +kGroups
+x,F¶1,2¶3,"1,234.5"¶ | :3:2: '1,234.5' +kWrite
+x;F¶1;2¶3;1.234,5¶ | :3:2: '1.234,5' +kWrite
 x,F¶1,2¶3,+-4¶ | :3:2: '+-4' +kWrite
 a,1,2¶1,b,2¶1,2,c¶ | :1:1: 'a' +kWrite
 x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' +kWrite
-x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kFill
-x;F¶1,5;2¶3;4.5¶ | :2:1: '1,5' +kGroups
-x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write it like -1,5e-3, with one decimal mark
-   throughout and none of thousands; where that is a comma, separate the columns by ';' or tabs, or
+x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kWrite
+x;F¶1,5;2¶3;4.5¶ | :2:1: '1,5' +kWrite
+x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write it like -1,5e-3, with no other mark, or
    remove the row
 x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row ends before this column: complete it or remove it
 #¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row ends before this column: complete it or remove it
@@ -128,8 +121,7 @@ x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4 +kTooMany
 x,F¶.1,.2¶.3,".4¶.5,.6¶ | :3: a quotation mark opened here is never closed in its line
 ¶"x,F¶1,2¶3,4¶ | :2: a quotation mark opened here is never closed in its line
 x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for the 3 columns of line 2:
-   name every column, begin the line with '#' if it is a comment, or leave out commas that separate
-   thousands
+   name every column, begin the line with '#' if it is a comment, or remove commas within numbers
 Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a header for the 2
    columns of line 2 +kName
 x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for the 2 columns of line
@@ -138,7 +130,7 @@ x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for t
 x,F¶nan,n/a¶#N/A,nan¶ | :3: none of the first 3 rows has numbers, nor has '#N/A,nan' +kExpected
 #N/A,#DIV/0!¶#VALUE!,#N/A¶ | :2: none of the first 2 rows has numbers, nor has '#VALUE!,#N/A' +kExpected
 x,F¶1,a¶2,b¶ | :2:2: 'F' (column 2) holds no numbers
-x,F¶1,2¶ #n/a,3¶ | :3:1: '#n/a' +kFill
+x,F¶1,2¶ #n/a,3¶ | :3:1: '#n/a' +kWrite
 )faults";
 
 TEST(CsvTable, IsRefusedInOneLineWhereItIsBroken) {

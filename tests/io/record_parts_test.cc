@@ -8,7 +8,6 @@ namespace {
 RecordFile TwoLoads() {
   RecordFile file;
   file.name = "series.csv";
-  file.notes = {"a note"};
   file.record.covariates = {{.name = "p", .unit = "bar", .values = {}}};
   for (std::size_t i = 0; i < 320; ++i) {
     file.lines.push_back(i + 2);
@@ -31,7 +30,6 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(file.record.force, ElementsAre(3, 4));
   EXPECT_THAT(file.record.normal_load, ElementsAre(20, 20));
   EXPECT_THAT(file.record.covariates[0].values, ElementsAre(-3, -4));
-  EXPECT_EQ(file.notes.back(), "series.csv: 2 of 320 samples lie in the time window 5:6 s");
   const auto refusal = [&] { return MessageOf<InputError>([&] { KeepTimeWindow(file, 7, 8); }); };
   EXPECT_THAT(refusal(), HasSubstr("7:8 holds no sample: the record runs from 5 to 6 s"));
   file.record.time.clear();

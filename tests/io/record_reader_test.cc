@@ -114,10 +114,6 @@ TEST(RecordReader, NotesWhatItAssumes) {
                      "loop.csv: force 'F' (column 2) names no unit: taken as N; "
                      "--force '2 [N]' says so"}));
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"), Strings{});
-  EXPECT_EQ(
-      Notes("timestamp_ms,x [m],F [N]\n1709633472000,1.5,2.5\n"),
-      (Strings{"loop.csv: time 'timestamp_ms' (column 1) holds dates or times of day: counted "
-               "from the first"}));
   EXPECT_EQ(Notes("millis,x [m],F [N]\n1,1.5,2.5\n"), Strings{});
 }
 
@@ -173,14 +169,14 @@ x [mm],F¶um,N¶1,2¶ | - | - | :1:1: the unit 'mm or um' of 'x [mm]' (column 1)
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3: has a number that is too large in SI units
-x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or remove
-   the row
-x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or
-   remove the row
+x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, with no
+   other mark, or remove the row
+x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, with no
+   other mark, or remove the row
 x [m],F [N]¶1,2¶# the unit of neither¶a,b,c¶3,off¶ | - | - | :4:1: 'a' is not a number: write it
-   like -1.5e-3, or remove the row; a further block of rows must have the columns of line 1 above it
-time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: fill in the cell or remove
-   the row; 1 of 2 rows are so: --broken-rows skip leaves them out
+   like -1.5e-3, with no other mark, or remove the row; a further block of rows must have the columns of line 1 above it
+time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: write it like -1.5e-3,
+   with no other mark, or remove the row; 1 of 2 rows are so: --broken-rows skip leaves them out
 )faults";
 
 TEST(RecordReader, RefusesWhatItCannotReadInOneLine) {

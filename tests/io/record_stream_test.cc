@@ -66,7 +66,8 @@ TEST(RecordStream, SkipsBrokenRowsAndCountsThem) {
   EXPECT_FALSE(stream.Next(samples));
   EXPECT_EQ(stream.layout().left_out.count, 4u);
   EXPECT_EQ(stream.layout().left_out.fault,
-            fmt::format("{}:3:2: 'oops' is not a number: write it like -1.5e-3, or remove the row",
+            fmt::format("{}:3:2: 'oops' is not a number: write it like -1.5e-3, with no other "
+                        "mark, or remove the row",
                         path.string()));
 }
 

@@ -141,8 +141,7 @@ class RecordStream {
 std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
                                         const std::string& column = {});
 
-/// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
-/// note of how many.
+/// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included.
 /// @throws InputError when the record has no time, or no sample lies there
 void KeepTimeWindow(RecordFile& input, double first, double last);
 
