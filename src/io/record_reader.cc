@@ -34,9 +34,8 @@ void RequireNoSignBit(const CsvTable& table, const Quantity& quantity) {
   if (below >= kBit / 2) return;
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
-      "write signed numbers, {} - value where the value is {} or more",
-      table.Header(), table.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name, kBit,
-      kBit);
+      "write signed numbers",
+      table.Header(), table.Label(column), below, kBit - 1, kBit, RulesOf(quantity.role).name);
 }
 
 }  // namespace
@@ -203,15 +202,12 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
 
 /// Appends the columns of another file of the same test, row by row.
 void AddColumnsOf(CsvTable& table, const CsvTable& other) {
-  if (table.rows() != other.rows()) {
-    Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
-           table.file, table.rows(), other.file, other.rows());
-  }
   const auto time = BestColumn(table, Role::kTime);
   const auto its_time = BestColumn(other, Role::kTime);
-  if (time && its_time && table.columns[*time].values != other.columns[*its_time].values) {
-    Refuse("--with: {} and {} have different times: give the values of one at those of the other",
-           table.file, other.file);
+  if (table.rows() != other.rows() ||
+      (time && its_time && table.columns[*time].values != other.columns[*its_time].values)) {
+    Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
+           table.file, table.rows(), other.file, other.rows());
   }
   table.columns.insert(table.columns.end(), other.columns.begin(), other.columns.end());
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());

@@ -234,12 +234,7 @@ class RoleAssigner {
 std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
                      Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
-  const std::size_t columns = table.columns.size();
-  if (number >= 1 && number <= columns) return *number - 1;
-  if (number) {
-    Refuse("{}: there is no column {}: the file has {} column{}", where, *number, columns,
-           columns == 1 ? "" : "s");
-  }
+  if (number >= 1 && number <= table.columns.size()) return *number - 1;
   if (const auto named = table.Named(name, role)) return *named;
   Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
          table.Listing());

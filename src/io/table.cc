@@ -124,10 +124,9 @@ class Reading {
     if (rows.empty()) Refuse("{}: holds no data, only blank or '#' lines", table.file);
     if (columns_ == 0) {
       Refuse(
-          "{}:{}: none of the first {} rows has numbers, nor has '{}': expected columns of numbers "
-          "under an optional header, between tabs, ';', blanks, or commas where these are no "
-          "decimal marks",
-          table.file, rows.back().line, rows.size(), ForMessage(rows.back().text));
+          "{}:{}: no row down to '{}' has numbers: expected columns of them, under an optional "
+          "header, between tabs, ';', blanks, or commas where these are no decimal marks",
+          table.file, rows.back().line, ForMessage(rows.back().text));
     }
     FindData(table);
     FindNames(table);
@@ -241,11 +240,9 @@ class Reading {
     } else if (has_rows) {
       const Row& row = rows_[data_ - 1];
       Refuse(
-          "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-          "every column, begin the line with '#' if it is a comment, or remove commas within "
-          "numbers",
-          table.file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
-          rows_[data_].line);
+          "{}:{}: '{}' is neither a row of data nor a header for line {}: name every column, begin "
+          "the line with '#' if it is a comment, or remove commas within numbers",
+          table.file, row.line, ForMessage(row.text), rows_[data_].line);
     }
   }
 

@@ -243,7 +243,7 @@ struct BadFile {
 TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
   const std::vector<BadFile> files = {
       {"empty.csv", "", "the file is empty"},
-      {"header.csv", "x [m],F [N]\n", "header.csv:1: none of the first 1 rows has numbers"},
+      {"header.csv", "x [m],F [N]\n", "header.csv:1: no row down to 'x [m],F [N]' has numbers"},
       {"one.csv", "x [m],F [N]\n1,2\n", "one.csv:2:1: the displacement never changes"},
       {"still.csv", "#\nx [m],F [N]\n1,2\n1,3\n1,4\n", "still.csv:3:1: the displacement never"},
       {"mm.csv", "t [s],F [N],x [mm]\n1,2,5\n2,3,5\n",
@@ -256,10 +256,9 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
        "bar.csv:1:2: the unit 'bar' of 'F [bar]' (column 2) is not known for the force"},
       {"words.csv", "x [m],F [N]\n0,a\n1,b\n0,c\n",
        "words.csv:2:2: 'F [N]' (column 2) holds no numbers"},
-      {"allwords.csv", "x,F\na,b\nc,d\n",
-       "allwords.csv:3: none of the first 3 rows has numbers, nor has 'c,d'"},
+      {"allwords.csv", "x,F\na,b\nc,d\n", "allwords.csv:3: no row down to 'c,d' has numbers"},
       {"nans.csv", "x [m],F [N]\nnan,nan\nnan,nan\n",
-       "nans.csv:3: none of the first 3 rows has numbers, nor has 'nan,nan'"},
+       "nans.csv:3: no row down to 'nan,nan' has numbers"},
       {"na.csv", "x [m],F [N]\n0,0\n#N/A,1\n0,2\n1,1\n", "na.csv:3:1: '#N/A' is not a number"},
       {"clock.csv", "0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n",
        "4 samples are too few for 5 free parameters"},

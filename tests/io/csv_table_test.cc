@@ -86,7 +86,7 @@ TEST(CsvTable, IsTheSameInEveryFormat) {
 const std::map<std::string, std::string> kEnds = {
     {"kWrite", " is not a number: write it like -1.5e-3, with no other mark, or remove the row"},
     {"kExpected",
-     ": expected columns of numbers under an optional header, between tabs, ';', blanks, or commas "
+     ": expected columns of them, under an optional header, between tabs, ';', blanks, or commas "
      "where these are no decimal marks"},
     {"kName",
      ": name every column, begin the line with '#' if it is a comment, or remove commas within "
@@ -96,7 +96,7 @@ const std::map<std::string, std::string> kEnds = {
 // Broken files, and what is said of each of them as loop.csv.
 const std::string kFaults = R"faults(
 ¶  ¶# x¶→¶ | : holds no data, only blank or '#' lines
-Dear Sir,¶yours, truly¶ | :2: none of the first 2 rows has numbers, nor has 'yours, truly' +kExpected
+Dear Sir,¶yours, truly¶ | :2: no row down to 'yours, truly' has numbers +kExpected
 x,F¶1,2¶3,abc¶ | :3:2: 'abc' +kWrite
 x,F¶1,2¶3 mm,4¶ | :3:1: '3 mm' +kWrite
 x,F¶1,2¶nan,4¶ | :3:1: 'nan' +kWrite
@@ -120,15 +120,13 @@ x,F¶1,2¶3,4,5¶6,7¶ | :3:3 +kTooMany
 x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4 +kTooMany
 x,F¶.1,.2¶.3,".4¶.5,.6¶ | :3: a quotation mark opened here is never closed in its line
 ¶"x,F¶1,2¶3,4¶ | :2: a quotation mark opened here is never closed in its line
-x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for the 3 columns of line 2:
+x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for line 2:
    name every column, begin the line with '#' if it is a comment, or remove commas within numbers
-Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a header for the 2
-   columns of line 2 +kName
-x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for the 2 columns of line
-   3 +kName
-# rig 3¶x [m],F [N]¶ | :2: none of the first 1 rows has numbers, nor has 'x [m],F [N]' +kExpected
-x,F¶nan,n/a¶#N/A,nan¶ | :3: none of the first 3 rows has numbers, nor has '#N/A,nan' +kExpected
-#N/A,#DIV/0!¶#VALUE!,#N/A¶ | :2: none of the first 2 rows has numbers, nor has '#VALUE!,#N/A' +kExpected
+Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a header for line 2 +kName
+x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for line 3 +kName
+# rig 3¶x [m],F [N]¶ | :2: no row down to 'x [m],F [N]' has numbers +kExpected
+x,F¶nan,n/a¶#N/A,nan¶ | :3: no row down to '#N/A,nan' has numbers +kExpected
+#N/A,#DIV/0!¶#VALUE!,#N/A¶ | :2: no row down to '#VALUE!,#N/A' has numbers +kExpected
 x,F¶1,a¶2,b¶ | :2:2: 'F' (column 2) holds no numbers
 x,F¶1,2¶ #n/a,3¶ | :3:1: '#n/a' +kWrite
 )faults";

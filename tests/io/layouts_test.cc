@@ -325,7 +325,7 @@ TEST(Expression, RefusesWhatItCannotBe) {
   for (const auto& [force, said] : {std::pair("F*", "--force F*: must be a sum of columns"),
                                     {"F*G", "must be a sum of columns"},
                                     {"2-3", "with #3 for the third column"},
-                                    {"#4-#3", "there is no column 4: the file has 3 columns"},
+                                    {"#4-#3", "no column is called '#4'"},
                                     {"F+H", "no column is called 'H'"},
                                     {"F*0", "must be a sum of columns"},
                                     {"F-G", "the unit 'V' of 'F [V]' (column 2) is not known"}}) {
@@ -357,7 +357,7 @@ TEST(WithAnotherFile, JoinsColumnsOfTheSameTimes) {
   EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2\n", columns).record.force, (Numbers{10, 20}));
   const auto later = directory.Write("c.txt", "t [s],x [mm]\n0.5,1\n1.5,2\n");
   EXPECT_THAT(MessageOf<InputError>([&] { ReadRecord(later, columns); }),
-              HasSubstr("timed.txt have different times"));
+              HasSubstr("give files of as many rows, at the same times"));
 }
 
 }  // namespace

@@ -123,8 +123,10 @@ t,x,F¶1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the di
    columns are 't' (column 1), 'x' (column 2), 'F' (column 3)
 1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the columns
    are column 1, column 2, column 3
-t,x,F¶1,2,3¶ | - | 4 | : --force 4: there is no column 4: the file has 3 columns
-t,x,F¶1,2,3¶ | - | 0 | : --force 0: there is no column 0: the file has 3 columns
+t,x,F¶1,2,3¶ | - | 4 | : --force 4: no column is called '#4' (for the force): the
+   columns are 't' (column 1), 'x' (column 2), 'F' (column 3)
+t,x,F¶1,2,3¶ | - | 0 | : --force 0: no column is called '#0' (for the force): the
+   columns are 't' (column 1), 'x' (column 2), 'F' (column 3)
 t,x,F¶1,2,3¶ | x | 2 | : 'x' (column 2) is chosen for the force and for another quantity: choose
    two columns
 ¶x,d,F¶1,2,3¶ | - | - | :2: 'x' (column 1) and 'd' (column 2) may each be the displacement: choose
