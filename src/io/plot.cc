@@ -72,18 +72,14 @@ class Axis {
 
   /// @param margin  on either side of the data, a fraction of their span
   Axis(const Values& data, double margin, bool is_logarithmic) : is_logarithmic_(is_logarithmic) {
-    from_ = At(std::ranges::min(data));
-    to_ = At(std::ranges::max(data));
-    double span = to_ - from_;
+    const auto [least, greatest] = std::ranges::minmax(data);
+    double span = At(greatest) - At(least);
     // A constant has an axis too: a fraction of it to either side, far above what rounding leaves.
-    const double size = std::max(std::abs(from_), std::abs(to_));
-    if (!(span > 1e-9 * size)) {
-      span = is_logarithmic ? 0.3 : size > 0 ? 0.2 * size : 1.0;
-      from_ -= span / 2;
-      to_ += span / 2;
-    }
-    from_ -= margin * span;
-    to_ += margin * span;
+    const double size = std::max(std::abs(At(least)), std::abs(At(greatest)));
+    if (!(span > 1e-9 * size)) span = is_logarithmic ? 0.3 : size > 0 ? 0.2 * size : 1.0;
+    const double middle = (At(least) + At(greatest)) / 2;
+    from_ = middle - (0.5 + margin) * span;
+    to_ = middle + (0.5 + margin) * span;
     if (is_logarithmic) {
       PlaceTicsOfPowers();
     } else {
