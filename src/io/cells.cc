@@ -55,13 +55,6 @@ std::optional<double> ReadClock(std::string text) {
 
 }  // namespace
 
-std::string_view TakeLine(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
-}
-
 bool IsBlankOrComment(std::string_view line) {
   line = Trimmed(line);
   if (line.empty() || line.front() != '#') return line.empty();

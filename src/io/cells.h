@@ -18,9 +18,6 @@ constexpr bool IsLetter(char character) {
          static_cast<unsigned char>(character) >= 0x80;
 }
 
-/// Takes the first line off a text, without its end.
-std::string_view TakeLine(std::string_view& text);
-
 /// True for a line that holds no row: blank, or a comment that begins with '#', where that is no
 /// error value of a spreadsheet ("#N/A").
 bool IsBlankOrComment(std::string_view line);

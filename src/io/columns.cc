@@ -55,6 +55,12 @@ bool Lists(std::string_view list, std::string_view word) {
   return list.find(fmt::format("|{}|", word)) != list.npos;
 }
 
+/// Returns the dimension of a unit; none of one that is not known.
+std::optional<Dimension> DimensionOf(std::string_view symbol) {
+  const std::optional<Unit> unit = FindUnit(symbol);
+  return unit ? std::optional(unit->dimension) : std::nullopt;
+}
+
 bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
 
 /// Returns the words of a name between blanks, " in words ": runs of letters, cut where a small one
@@ -254,11 +260,6 @@ void ObserveValues(Column& column) {
 }  // namespace
 
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
-
-std::optional<Dimension> DimensionOf(std::string_view symbol) {
-  const std::optional<Unit> unit = FindUnit(symbol);
-  return unit ? std::optional(unit->dimension) : std::nullopt;
-}
 
 bool MayHaveRole(std::optional<Dimension> dimension, Role role) {
   const bool is_role = role <= Role::kNormalLoad;

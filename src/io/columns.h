@@ -74,8 +74,6 @@ Column ReadName(std::string_view header, std::string_view below = {});
 /// brackets.
 bool LooksLikeUnit(std::string_view cell);
 
-/// Returns the dimension of a unit; none of one that is not known.
-std::optional<Dimension> DimensionOf(std::string_view symbol);
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 

@@ -202,10 +202,11 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
 
 /// Appends the columns of another file of the same test, row by row.
 void AddColumnsOf(CsvTable& table, const CsvTable& other) {
-  const auto time = BestColumn(table, Role::kTime);
-  const auto its_time = BestColumn(other, Role::kTime);
-  if (table.rows() != other.rows() ||
-      (time && its_time && table.columns[*time].values != other.columns[*its_time].values)) {
+  const auto is_time = [](const Column& of) { return of.names(Role::kTime) && of.is_numeric; };
+  const auto time = std::ranges::find_if(table.columns, is_time);
+  const auto its_time = std::ranges::find_if(other.columns, is_time);
+  const bool have_times = time != table.columns.end() && its_time != other.columns.end();
+  if (table.rows() != other.rows() || (have_times && time->values != its_time->values)) {
     Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
            table.file, table.rows(), other.file, other.rows());
   }
@@ -267,16 +268,7 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
 std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
                                         const std::string& column) {
   const CsvTable table = ReadCsvTable(path);
-  Quantity displacement = ReadQuantity(column, table, Role::kDisplacement);
-  if (displacement.terms.empty()) {
-    const Column& front = table.columns.front();
-    const bool is_another = front.names(Role::kTime) || front.names(Role::kForce);
-    const auto best = is_another ? BestColumn(table, Role::kDisplacement) : std::nullopt;
-    displacement.terms = {{best.value_or(0)}};
-  }
-  const Column& first = table.columns[displacement.first_column()];
-  std::vector<std::string> notes;  // SI is the documented default here
-  FindUnitOf(displacement, table, first.IsAngular(displacement.given_unit) == true, notes);
+  const Quantity displacement = ReadImposed(column, table);
   for (const auto& term : displacement.terms) static_cast<void>(table.Numbers(term.column));
   std::vector<double> values(table.rows());
   for (std::size_t row = 0; row < values.size(); ++row) {

@@ -72,6 +72,144 @@ std::string UnitOfStamp(double number) {
   return "";
 }
 
+/// Returns the column of a name, or of a number from 1 behind '#'.
+/// @param where  it stands, for the refusal of one that there is not
+std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
+                     Role role) {
+  const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
+  if (number >= 1 && number <= table.columns.size()) return *number - 1;
+  if (const auto named = table.Named(name, role)) return *named;
+  Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
+         table.Listing());
+}
+
+/// Reads a sum of products, each of numbers and at most one column.
+void ReadSum(std::string_view rest, const CsvTable& table, const std::string& where,
+             Quantity& sum) {
+  constexpr std::string_view kOperators = "+-*";
+  const auto require = [&](bool is_sum) {
+    if (is_sum) return;
+    Refuse(
+        "{}: must be a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], "
+        "with #3 for the third column",
+        where);
+  };
+  const auto take = [&](std::size_t size) { rest = Trimmed(rest.substr(size)); };
+  while (!rest.empty()) {
+    double factor = 1.0;
+    for (; rest.starts_with('-') || rest.starts_with('+'); take(1)) {
+      if (rest.front() == '-') factor = -factor;
+    }
+    std::optional<std::size_t> column;
+    for (bool goes_on = true; goes_on;) {
+      double number = 0.0;
+      const char* const stop = std::from_chars(rest.data(), rest.data() + rest.size(), number).ptr;
+      auto size = static_cast<std::size_t>(stop - rest.data());
+      const std::string_view behind = Trimmed(rest.substr(size)).substr(0, 1);
+      if (size > 0 && (behind.empty() || kOperators.find(behind) != behind.npos)) {
+        factor *= number;
+        sum.is_scaled = true;
+      } else {
+        size = std::min(rest.find_first_of(kOperators), rest.size());
+        require(size > 0 && !column);
+        column = ColumnIn(Trimmed(rest.substr(0, size)), table, where, sum.role);
+      }
+      take(size);
+      goes_on = rest.starts_with('*');
+      if (goes_on) take(1);
+    }
+    require(std::isfinite(factor) && (!column || factor != 0));
+    if (column) sum.terms.push_back({*column, factor});
+    if (!column) sum.offset += factor;
+  }
+  require(!sum.terms.empty());
+}
+
+/// Reads a text of RecordColumns. One that is a name as a whole is that column; in a sum, a column
+/// is called by number behind '#'.
+/// @throws InputError for an unknown or ambiguous one
+Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role) {
+  Quantity quantity{.role = role};
+  std::string_view text = Trimmed(given);
+  if (!NumberIn<std::size_t>(text)) {
+    if (const auto named = table.Named(text, role)) {
+      quantity.terms = {{*named}};
+      return quantity;
+    }
+  }
+  if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
+    quantity.given_unit = Trimmed(text.substr(open + 1, text.size() - open - 2));
+    text = Trimmed(text.substr(0, open));
+  }
+  // A number alone is that of a column.
+  const std::string sum = (NumberIn<std::size_t>(text) ? "#" : "") + std::string(text);
+  const std::string where = fmt::format("{}: {} {}", table.file, RulesOf(role).option, given);
+  if (!sum.empty()) ReadSum(sum, table, where, quantity);
+  return quantity;
+}
+
+/// Returns the column with the best evidence for a role; none where none has any.
+/// @param turns  whether a displacement is to be an angle, or a force a torque
+std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
+                                      const std::vector<bool>& taken, std::optional<bool> turns) {
+  std::optional<std::size_t> best, rival;
+  int most = 0;
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    const int score = !taken[column] ? ScoreFor(table.columns[column], role, turns) : 0;
+    if (score == most) rival = column;
+    if (score <= most) continue;
+    best = column;
+    rival.reset();
+    most = score;
+  }
+  if (best && rival && role <= Role::kForce) table.ThrowAmbiguous(role, *best, *rival);
+  return best;
+}
+
+/// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
+/// @throws InputError for a unit that is none of the role's, and for columns in several units
+void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
+                std::vector<std::string>& notes) {
+  const RoleRules& rules = RulesOf(quantity.role);
+  const Dimension dimension = is_torsional ? rules.angular : rules.linear;
+  const std::size_t first = quantity.first_column();
+  const Column& of = table.columns[first];
+  const std::string label = table.Label(first);
+  const bool is_time = quantity.role == Role::kTime;
+  const bool is_given = !quantity.given_unit.empty() || (is_time && of.is_clock);
+  std::string stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
+  if (is_time && of.is_clock) stamp = quantity.given_unit = "s";
+  std::set<std::string> stated;
+  for (const Quantity::Term& term : quantity.terms) {
+    stated.insert(is_given ? quantity.given_unit : table.columns[term.column].unit);
+  }
+  const std::string symbol = fmt::format("{}", fmt::join(stated, " and "));
+  const std::string symbols = UnitSymbols(dimension);
+  std::string assumed = symbols.substr(0, symbols.find(','));
+  const auto unit = FindUnit(symbol);
+  const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
+  if (unit &&
+      (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear))) {
+    quantity.unit = *unit;
+  } else if (is_given || stated.size() > 1 || (!symbol.empty() && !quantity.is_scaled)) {
+    Refuse(
+        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
+        "or with a factor '#{}*0.001 [{}]'",
+        is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
+        rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
+  } else {
+    if (symbol.empty()) {
+      quantity.has_no_unit = true;
+      if (!stamp.empty()) assumed = stamp;
+      notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
+                                  table.file, rules.name, label, assumed, rules.option, first + 1,
+                                  assumed));
+    }
+    quantity.unit = *FindUnit(assumed);
+  }
+  if (!stamp.empty() && stamp == quantity.unit.symbol) quantity.offset -= of.first;
+}
+
 class RoleAssigner {
  public:
   RoleAssigner(const CsvTable& table, std::vector<std::string>& notes)
@@ -229,80 +367,7 @@ class RoleAssigner {
   std::vector<Quantity> roles_;  // in the order of Role
 };
 
-/// Returns the column of a name, or of a number from 1 behind '#'.
-/// @param where  it stands, for the refusal of one that there is not
-std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
-                     Role role) {
-  const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
-  if (number >= 1 && number <= table.columns.size()) return *number - 1;
-  if (const auto named = table.Named(name, role)) return *named;
-  Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
-         table.Listing());
-}
-
-/// Reads a sum of products, each of numbers and at most one column.
-void ReadSum(std::string_view rest, const CsvTable& table, const std::string& where,
-             Quantity& sum) {
-  constexpr std::string_view kOperators = "+-*";
-  const auto require = [&](bool is_sum) {
-    if (is_sum) return;
-    Refuse(
-        "{}: must be a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], "
-        "with #3 for the third column",
-        where);
-  };
-  const auto take = [&](std::size_t size) { rest = Trimmed(rest.substr(size)); };
-  while (!rest.empty()) {
-    double factor = 1.0;
-    for (; rest.starts_with('-') || rest.starts_with('+'); take(1)) {
-      if (rest.front() == '-') factor = -factor;
-    }
-    std::optional<std::size_t> column;
-    for (bool goes_on = true; goes_on;) {
-      double number = 0.0;
-      const char* const stop = std::from_chars(rest.data(), rest.data() + rest.size(), number).ptr;
-      auto size = static_cast<std::size_t>(stop - rest.data());
-      const std::string_view behind = Trimmed(rest.substr(size)).substr(0, 1);
-      if (size > 0 && (behind.empty() || kOperators.find(behind) != behind.npos)) {
-        factor *= number;
-        sum.is_scaled = true;
-      } else {
-        size = std::min(rest.find_first_of(kOperators), rest.size());
-        require(size > 0 && !column);
-        column = ColumnIn(Trimmed(rest.substr(0, size)), table, where, sum.role);
-      }
-      take(size);
-      goes_on = rest.starts_with('*');
-      if (goes_on) take(1);
-    }
-    require(std::isfinite(factor) && (!column || factor != 0));
-    if (column) sum.terms.push_back({*column, factor});
-    if (!column) sum.offset += factor;
-  }
-  require(!sum.terms.empty());
-}
-
 }  // namespace
-
-Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role) {
-  Quantity quantity{.role = role};
-  std::string_view text = Trimmed(given);
-  if (!NumberIn<std::size_t>(text)) {
-    if (const auto named = table.Named(text, role)) {
-      quantity.terms = {{*named}};
-      return quantity;
-    }
-  }
-  if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
-    quantity.given_unit = Trimmed(text.substr(open + 1, text.size() - open - 2));
-    text = Trimmed(text.substr(0, open));
-  }
-  // A number alone is that of a column.
-  const std::string sum = (NumberIn<std::size_t>(text) ? "#" : "") + std::string(text);
-  const std::string where = fmt::format("{}: {} {}", table.file, RulesOf(role).option, given);
-  if (!sum.empty()) ReadSum(sum, table, where, quantity);
-  return quantity;
-}
 
 std::size_t ReadCovariate(const std::string& text, const CsvTable& table) {
   const Quantity chosen = ReadQuantity(text, table, Role::kOther);
@@ -310,63 +375,19 @@ std::size_t ReadCovariate(const std::string& text, const CsvTable& table) {
   Refuse("{}: --covariate {}: must be one column", table.file, text);
 }
 
-std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
-                                      const std::vector<bool>& taken, std::optional<bool> turns) {
-  std::optional<std::size_t> best, rival;
-  int most = 0;
-  for (std::size_t column = 0; column < table.columns.size(); ++column) {
-    const bool is_free = taken.empty() || !taken[column];
-    const int score = is_free ? ScoreFor(table.columns[column], role, turns) : 0;
-    if (score == most) rival = column;
-    if (score <= most) continue;
-    best = column;
-    rival.reset();
-    most = score;
+Quantity ReadImposed(const std::string& text, const CsvTable& table) {
+  Quantity displacement = ReadQuantity(text, table, Role::kDisplacement);
+  if (displacement.terms.empty()) {
+    const Column& front = table.columns.front();
+    const bool is_another = front.names(Role::kTime) || front.names(Role::kForce);
+    const std::vector<bool> none_taken(table.columns.size());
+    const auto best = is_another ? BestColumn(table, Role::kDisplacement, none_taken, {}) : 0U;
+    displacement.terms = {{best.value_or(0)}};
   }
-  if (best && rival && role <= Role::kForce) table.ThrowAmbiguous(role, *best, *rival);
-  return best;
-}
-
-void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
-                std::vector<std::string>& notes) {
-  const RoleRules& rules = RulesOf(quantity.role);
-  const Dimension dimension = is_torsional ? rules.angular : rules.linear;
-  const std::size_t first = quantity.first_column();
-  const Column& of = table.columns[first];
-  const std::string label = table.Label(first);
-  const bool is_time = quantity.role == Role::kTime;
-  const bool is_given = !quantity.given_unit.empty() || (is_time && of.is_clock);
-  std::string stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
-  if (is_time && of.is_clock) stamp = quantity.given_unit = "s";
-  std::set<std::string> stated;
-  for (const Quantity::Term& term : quantity.terms) {
-    stated.insert(is_given ? quantity.given_unit : table.columns[term.column].unit);
-  }
-  const std::string symbol = fmt::format("{}", fmt::join(stated, " and "));
-  const std::string symbols = UnitSymbols(dimension);
-  std::string assumed = symbols.substr(0, symbols.find(','));
-  const auto unit = FindUnit(symbol);
-  const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
-  if (unit &&
-      (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear))) {
-    quantity.unit = *unit;
-  } else if (is_given || stated.size() > 1 || (!symbol.empty() && !quantity.is_scaled)) {
-    Refuse(
-        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
-        "or with a factor '#{}*0.001 [{}]'",
-        is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
-        rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
-  } else {
-    if (symbol.empty()) {
-      quantity.has_no_unit = true;
-      if (!stamp.empty()) assumed = stamp;
-      notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                  table.file, rules.name, label, assumed, rules.option, first + 1,
-                                  assumed));
-    }
-    quantity.unit = *FindUnit(assumed);
-  }
-  if (!stamp.empty() && stamp == quantity.unit.symbol) quantity.offset -= of.first;
+  const Column& first = table.columns[displacement.first_column()];
+  std::vector<std::string> notes;  // SI is the documented default here
+  FindUnitOf(displacement, table, first.IsAngular(displacement.given_unit) == true, notes);
+  return displacement;
 }
 
 std::vector<Quantity> AssignRoles(const CsvTable& table, const RecordColumns& asked,

@@ -38,26 +38,11 @@ struct Quantity {
   }
 };
 
-/// Reads a text of RecordColumns. One that is a name as a whole is that column; in a sum, a column
-/// is called by number behind '#'.
-/// @throws InputError for an unknown or ambiguous one
-Quantity ReadQuantity(const std::string& text, const CsvTable& table, Role role);
-
 /// Returns the column, from 0, that the user calls so.
 std::size_t ReadCovariate(const std::string& text, const CsvTable& table);
 
-/// Returns the column with the best evidence for a role; none where none has any.
-/// @param taken  columns that are none of the role's; none where it is empty
-/// @param turns  whether a displacement is to be an angle, or a force a torque
-/// @throws InputError where two have as much for a displacement or a force
-std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
-                                      const std::vector<bool>& taken = {},
-                                      std::optional<bool> turns = {});
-
-/// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
-/// @throws InputError for a unit that is none of the role's, and for columns in several units
-void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
-                std::vector<std::string>& notes);
+/// Returns the displacement that the user calls so, or that of ImposedDisplacement().
+Quantity ReadImposed(const std::string& text, const CsvTable& table);
 
 /// Returns the quantities of a record, from displacement and force to time and normal load where
 /// there are such: as they are given, else by the evidence of unit, name and numbers.

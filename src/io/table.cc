@@ -19,6 +19,14 @@ using Strings = std::vector<std::string>;
 
 constexpr double kBroken = std::numeric_limits<double>::infinity();
 
+/// Takes the first line off a text, without its end.
+std::string_view TakeLine(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line.ends_with('\r') ? line.substr(0, line.size() - 1) : line;
+}
+
 /// A row of a text, and its cells under some delimiter and decimal mark.
 struct Row {
   std::string_view text = {};
