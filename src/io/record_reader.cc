@@ -65,11 +65,9 @@ class RecordBuilder {
       const bool is_plain = quantity.is_plain();
       if (is_plain && quantity.role <= Role::kForce) RequireNoSignBit(table, quantity);
       for (const Quantity::Term& term : quantity.terms) {
+        wanted_.push_back(term.column);
         if (table.columns[term.column].values.empty())
           static_cast<void>(table.Numbers(term.column));
-        if (std::ranges::find(wanted_, term.column) == wanted_.end()) {
-          wanted_.push_back(term.column);
-        }
       }
       file_.*role.chosen = {.name = is_plain ? table.columns[first].header : asked.*role.given,
                             .index = first + 1,
@@ -82,17 +80,16 @@ class RecordBuilder {
 
   /// Returns the columns, units, notes and the rows left out so far, without samples.
   [[nodiscard]] RecordFile& file() { return file_; }
-  /// Returns the columns that are used, from 0, each once.
+  /// Returns the columns that are used, from 0.
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
 
   /// Appends the rows of a table, up to one that is refused; those without a number in a column
   /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples) {
-    const bool has_interval = interval_ > 0;
     const auto resize = [&](std::size_t size) {
       samples.lines.resize(size);
-      if (has_interval) samples.time.resize(size);
+      if (interval_ > 0) samples.time.resize(size);
       for (const Quantity& of : quantities_) (samples.*RulesOf(of.role).values).resize(size);
     };
     std::size_t kept = samples.lines.size();
@@ -109,7 +106,7 @@ class RecordBuilder {
         values[k][kept] = quantities_[k].unit.ToSi(value);
         is_whole = is_whole && std::isfinite(values[k][kept]);
       }
-      if (has_interval) samples.time[kept] = static_cast<double>(rows_) * interval_;
+      if (interval_ > 0) samples.time[kept] = static_cast<double>(rows_) * interval_;
       if (is_whole && (samples.time.empty() || samples.time[kept] >= last_time_)) {
         if (!samples.time.empty()) last_time_ = samples.time[kept];
         samples.lines[kept++] = table.lines[row];

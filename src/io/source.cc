@@ -55,8 +55,7 @@ bool IsIn(std::string text, const std::string& encoding) {
 /// UTF-16 is known by its byte order mark; of what is not UTF-8, Shift-JIS by two bytes or more
 /// from 0x81 to 0x9F; the rest is Windows-1252, of which Latin-1 is a part.
 std::string EncodingOf(std::string_view head) {
-  if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
-  if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) return "UTF-16";
   const std::string text(head);
   if (IsIn(text, "UTF-8")) return "";
   // European letters may look like a few characters of it by chance.
@@ -162,7 +161,7 @@ void LinePieces::FindEncoding(std::string_view head) {
         "sjis or utf-16",
         encoding_, name_, std::strerror(errno));
   }
-  if (is_found && !encoding_.starts_with("UTF-16")) {
+  if (is_found && encoding_ != "UTF-16") {
     note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding",
                         name_, encoding_ == "CP932" ? "Shift-JIS" : "Latin-1 (Windows-1252)");
   }
