@@ -23,9 +23,11 @@ using enum Dimension;
 constexpr std::array kUnits = {
     Entry{kLength, "m", 1, 1, " meter meters metre metres м "},
     Entry{kLength, "mm", 1, 1e3,
-          " MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм "},
+          " MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм "
+          "1e-3m 10^-3m 10⁻³m "},
     Entry{kLength, "um", 1, 1e6,
-          " ㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм "},
+          " um ㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм "
+          "1e-6m 10^-6m 10⁻⁶m "},
     Entry{kLength, "nm", 1, 1e9, " ㎚ nanometer nanometers "},
     Entry{kLength, "cm", 1, 1e2, " ㎝ "},
     Entry{kLength, "in", 254, 1e4, " inch inches \" "},
@@ -34,9 +36,9 @@ constexpr std::array kUnits = {
     Entry{kLength, "pm", 1, 1e12},
     // A mass that stands for a force is its weight.
     Entry{kForce, "N", 1, 1, " newton newtons 牛 牛顿 Н "},
-    Entry{kForce, "mN", 1, 1e3, " millinewton millinewtons millin "},
-    Entry{kForce, "uN", 1, 1e6},
-    Entry{kForce, "kN", 1e3, 1, " KN kilonewton kilonewtons 千牛 千牛顿 кН "},
+    Entry{kForce, "mN", 1, 1e3, " millinewton millinewtons millin 1e-3N 10^-3N 10⁻³N "},
+    Entry{kForce, "uN", 1, 1e6, " 1e-6N 10^-6N 10⁻⁶N "},
+    Entry{kForce, "kN", 1e3, 1, " KN kilonewton kilonewtons 千牛 千牛顿 кН 1e3N 10^3N 10³N "},
     Entry{kForce, "MN", 1e6, 1},
     Entry{kForce, "lbf", 4.4482216152605, 1, " lb lbs pound pounds "},
     Entry{kForce, "kgf", 9.80665, 1, " kg ㎏ ㎏f kp кгс "},
@@ -47,7 +49,7 @@ constexpr std::array kUnits = {
     Entry{kForce, "ozf", 4.4482216152605, 16, " oz "},
     Entry{kForce, "cN", 1, 1e2},
     Entry{kAngle, "rad", 1, 1, " radian radians "},
-    Entry{kAngle, "mrad", 1, 1e3},
+    Entry{kAngle, "mrad", 1, 1e3, " 1e-3rad 10^-3rad 10⁻³rad "},
     Entry{kAngle, "deg", std::numbers::pi, 180, " ° degree degrees 度 "},
     Entry{kAngle, "rev", 2 * std::numbers::pi, 1, " revolutions "},
     Entry{kTorque, "N m", 1, 1},
@@ -68,26 +70,6 @@ constexpr std::array kUnits = {
     Entry{kPressure, "psi", 6894.757293168, 1},
     Entry{kPressure, "kgf/cm2", 98066.5, 1, " kgf/cm² "},
 };
-
-/// "µ", which has two code points, and a power of ten, "10^-6 m", as the prefix that they are.
-std::string WithAsciiPrefix(std::string_view symbol) {
-  for (const auto& [written, prefix] :
-       std::initializer_list<std::array<std::string_view, 2>>{{"\u00b5", "u"},
-                                                              {"\u03bc", "u"},
-                                                              {"1e-6 ", "u"},
-                                                              {"10^-6 ", "u"},
-                                                              {"10⁻⁶ ", "u"},
-                                                              {"1e-3 ", "m"},
-                                                              {"10^-3 ", "m"},
-                                                              {"10⁻³ ", "m"},
-                                                              {"1e3 ", "k"},
-                                                              {"10^3 ", "k"},
-                                                              {"10³ ", "k"}}) {
-    if (!symbol.starts_with(written)) continue;
-    return std::string(prefix).append(Trimmed(symbol.substr(written.size())));
-  }
-  return std::string(symbol);
-}
 
 /// Finds the torque that two units make, a force by a length: "N·m", "Nm", "kgf.cm", "ft-lb".
 std::optional<Unit> FindProduct(std::string_view symbol) {
@@ -122,8 +104,13 @@ std::optional<double> InBaseOf(double value, std::string_view symbol, std::strin
 
 std::optional<Unit> FindUnit(std::string_view symbol) {
   if (symbol.empty()) return std::nullopt;
-  const std::string ascii = WithAsciiPrefix(symbol);
-  const std::string word = " " + ascii + " ";
+  std::string ascii(symbol);
+  for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
+    if (ascii.starts_with(micro)) ascii.replace(0, micro.size(), "u");
+  }
+  std::string word = ascii;  // "10^-6 m" and "µ m" in one
+  std::erase(word, ' ');
+  word = " " + word + " ";
   const std::string lower = LowerCase(word);
   const auto is_it = [&](const Entry& entry) {
     // A single letter, or two, differ by their case: g and G, mN and MN.

@@ -47,8 +47,8 @@ constexpr std::string_view kRemarks =
 constexpr std::string_view kRatioUnit = "ratio";
 
 /// Beginnings of a factor behind a name, in lower case, that make its unit none.
-constexpr std::array<std::string_view, 10> kFactors = {"×",    "*0",    "*1",  " x0.", " x 0.",
-                                                       " x10", " x 10", "1e-", " e-",  "%"};
+constexpr std::array<std::string_view, 12> kFactors = {
+    "×", "*0", "*1", " x0.", " x 0.", " x10", " x 10", "1e-", " e-", "10^", "10⁻", "%"};
 
 /// True if a list "|a|b|" has the word.
 bool Lists(std::string_view list, std::string_view word) {

@@ -296,8 +296,7 @@ struct RecordStream::State {
 };
 
 RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& asked)
-    : state_(std::make_unique<State>(path, asked)) {}
-RecordStream::~RecordStream() = default;
+    : state_(std::make_shared<State>(path, asked)) {}
 
 const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
 

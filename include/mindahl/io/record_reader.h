@@ -114,9 +114,6 @@ class RecordStream {
  public:
   /// @throws InputError as ReadRecord() does of a file that ends with these rows
   explicit RecordStream(const std::filesystem::path& path, const RecordColumns& columns = {});
-  ~RecordStream();
-  RecordStream(const RecordStream&) = delete;
-  RecordStream& operator=(const RecordStream&) = delete;
 
   /// Returns the columns, units, notes and the rows left out so far; without samples.
   [[nodiscard]] const RecordFile& layout() const;
@@ -130,7 +127,7 @@ class RecordStream {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
 };
 
 /// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very
