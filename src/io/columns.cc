@@ -93,20 +93,15 @@ std::size_t MatchEnd(std::string_view entry, std::string_view words) {
   return at == std::string_view::npos ? 0 : at + pattern.size();
 }
 
-/// Returns the words of a name as they are written: remarks aside, and once for "U:U1".
-std::string WithoutRemarks(const std::string& words) {
-  std::vector<std::string_view> all = PartsOf(Trimmed(words), ' ');
-  std::erase_if(all, [](std::string_view word) { return Lists(kRemarks, LowerCase(word)); });
-  all.erase(std::ranges::unique(all).begin(), all.end());
-  return fmt::format("{}", fmt::join(all, " "));
-}
-
 /// Finds the best word of a name: the entry of most words, of these the last in the name, of these
 /// that of the lowest rank. One letter is a name by itself.
 void FindWord(Column& column) {
   const std::string written = WordsIn(column.name);
   const std::string words = LowerCase(written);
-  const std::string only = WithoutRemarks(written);
+  std::string only;  // of one letter, where no other words but remarks are with it
+  for (const std::string_view word : PartsOf(Trimmed(written), ' ')) {
+    if (!Lists(kRemarks, LowerCase(word))) only += word;
+  }
   std::tuple<std::size_t, std::size_t, int> best{0, 0, 0};
   for (const WordRow& row : kWords) {
     for (const std::string_view entry : PartsOf(row.words, '|')) {
@@ -281,13 +276,13 @@ Column ReadName(std::string_view header, std::string_view below) {
   TakeUnitInBrackets(column);
   if (column.unit.empty()) TakeUnitAmongWords(column);
   RequireNoFactor(column);
-  FindWord(column);
   below = WithoutBrackets(below);
   if (column.unit.empty()) {
     column.unit = below;
   } else if (!below.empty() && below != column.unit) {
     column.unit += fmt::format(" or {}", below);
   }
+  FindWord(column);
   // "millis"
   const bool is_unit = column.names(Role::kTime) && DimensionOf(name) == Dimension::kTime;
   if (column.unit.empty() && is_unit) column.unit = name;

@@ -29,7 +29,7 @@ inline constexpr std::array kWords = {
             "position|pos|travel|stroke|extension|lvdt|deflection|elongation|crosshead|qpos|*weg|"
             "*auslenkung|*hub|course|allongement|posición|posicion|carrera|recorrido|posizione|"
             "corsa|posição|posicao|curso|行程|位置|变形|伸び|ストローク"},
-    WordRow{Role::kDisplacement, 3, false, "x|X|d|u|U|delta|δ|Δ|ux|uy|dx"},
+    WordRow{Role::kDisplacement, 3, false, "x|X|d|u|U|u u|delta|δ|Δ|ux|uy|dx"},
     WordRow{Role::kDisplacement, 4, true,
             "angle|rotation|twist|theta|θ|phi|φ|q|winkel|drehwinkel|ángulo|angulo|angolo|角度|"
             "转角|回転角"},

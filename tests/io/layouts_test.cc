@@ -252,6 +252,7 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
                 HasSubstr("the unit 'ratio' of"))
         << names;
   }
+  EXPECT_EQ(Read("t,x,F,mu\ns,mm,N,-\n0,1,2,0.1\n1,2,3,0.2\n").record.covariates.front().unit, "-");
   EXPECT_EQ(Read("x [mm],mu,Load [N]\n0,0.1,9\n1,0.3,-9\n0,0.1,9\n").force.index, 3U);
   EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("the unit 'ratio' of"));
 }
