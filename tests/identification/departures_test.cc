@@ -442,7 +442,7 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       const std::vector<double> with = tested.simulate(departed[r], size);
       const std::vector<double> without = tested.simulate(departed[r], 0.0);
-      const LoadingPath& path = stages.solver.response.PathOf(r, theta);
+      const LoadingPath& path = stages.solver.response.MotionOf(r, theta).paths.front().path;
       for (std::size_t i = 0; i < with.size(); ++i, ++row) {
         // Next to a reversal, and where a loop closes, differences see both branches, and a gap or
         // a lag is not yet over: the force is not of first order in them there.

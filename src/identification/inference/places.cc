@@ -101,7 +101,7 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   ResponseColumns wanted;
   if (tells_asymmetry) wanted[TermId::kAsymmetry] = by_asymmetry;
   response.Bind(problem);
-  response.Differentiate(theta, contact, wanted);
+  response.Evaluate(theta, contact, wanted);
   if (is_forced) {
     const double scale = std::exp(LogScaleAt(problem, theta));
     for (double& value : contact) value *= scale;

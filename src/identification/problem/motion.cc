@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "identification/problem/parameters.h"
-#include "identification/problem/turning_points.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -28,18 +28,16 @@ Interval LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
 
 /// Moves a contact whose force is read late. It runs straight from sample to sample and turns where
 /// the record does, whatever the lag; beyond both ends of the record it rests.
-MovedPath MoveLate(const ScaledRecord& record, double lag) {
+std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const models::Turn> turns,
+                                   double lag, std::vector<double>& late) {
   const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
   const std::span<const double> x = motion.displacement;
   const std::span<const double> time = motion.time;
-  const std::vector<models::Turn> turns = TurnsOf(motion);
-  MovedPath late;
-  late.displacement.reserve(record.size());
+  std::vector<models::Turn> moved;
   std::size_t next = 1;  // the sample that the motion comes to next
-  std::size_t turn = 0;
   const auto turn_before = [&](std::size_t end) {
-    for (; turn < turns.size() && turns[turn].next <= end; ++turn) {
-      late.turns.push_back({late.displacement.size(), turns[turn].displacement});
+    while (moved.size() < turns.size() && turns[moved.size()].next <= end) {
+      moved.push_back({late.size(), turns[moved.size()].displacement});
     }
   };
   for (const double read : record.time) {
@@ -49,35 +47,35 @@ MovedPath MoveLate(const ScaledRecord& record, double lag) {
     const double duration = time[next] - time[next - 1];
     // Two samples may have the same time: the later one counts.
     const double fraction = duration > 0 ? (at - time[next - 1]) / duration : 1.0;
-    late.displacement.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));
+    late.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));
   }
   turn_before(motion.size());
-  return late;
+  return moved;
 }
 
 /// Moves a contact to one side of a gap. In each stroke it runs from where it was when the last one
 /// ended. There the gap is closed on the side of the force that is measured, so that the path of
 /// the contact depends on the gap alone: exact where no turning point lies within the gap.
 /// @param side  +1 of the side that bears forces above zero, −1 of the other
-MovedPath MoveBehindGap(const ScaledRecord& record, double gap, double side,
-                        const models::InitialContact& initial) {
+std::vector<models::Turn> MoveBehindGap(const ScaledRecord& record,
+                                        std::span<const models::Turn> turns, double gap,
+                                        double side, const models::InitialContact& initial,
+                                        std::vector<double>& behind) {
   const std::span<const double> x = record.displacement;
   const double half = gap / 2;
   const std::vector<Stroke> strokes = StrokesOf(x, record.reversals);
-  const std::vector<models::Turn> turns = TurnsOf(record);
   std::vector<double> ends;
   for (std::size_t s = 0; s < strokes.size(); ++s) {
     const std::size_t end = strokes[s].end;
     const double closed = record.force[end] == 0 ? strokes[s].direction : record.force[end];
     const double at = s < turns.size() ? turns[s].displacement : x[end];
-    ends.push_back(at - std::copysign(1.0, closed) * half);
+    ends.push_back(at - std::copysign(half, closed));
   }
   double from = 0.0;
   if (initial.state == models::InitialState::kVirgin) {
     // The contact is unloaded in the middle of the gap.
     const double travel = x.front() - initial.unloaded_displacement;
-    from = std::abs(travel) <= half ? initial.unloaded_displacement
-                                    : x.front() - std::copysign(1.0, travel) * half;
+    from = x.front() - std::clamp(travel, -half, half);
   } else {
     const double direction = strokes.front().direction;
     from = x.front() + direction * half;
@@ -85,21 +83,20 @@ MovedPath MoveBehindGap(const ScaledRecord& record, double gap, double side,
       if (direction * (end - from) < 0) from = end;
     }
   }
-  MovedPath moved;
-  moved.displacement.reserve(record.size());
+  std::vector<models::Turn> moved;
   for (std::size_t s = 0; s < strokes.size(); ++s) {
     // The contact does not move in a stroke that is shorter than the gap.
     const double to = strokes[s].direction * (ends[s] - from) >= 0 ? ends[s] : from;
     const auto [low, high] = std::minmax(from, to);
     const bool is_last = s == turns.size();
     const std::size_t end = is_last ? record.size() : turns[s].next;
-    for (std::size_t i = moved.displacement.size(); i < end; ++i) {
-      moved.displacement.push_back(std::clamp(x[i] - side * half, low, high));
+    for (std::size_t i = behind.size(); i < end; ++i) {
+      behind.push_back(std::clamp(x[i] - side * half, low, high));
     }
     if (is_last) {
-      moved.displacement.back() = to;
+      behind.back() = to;
     } else {
-      moved.turns.push_back({end, to});
+      moved.push_back({end, to});
     }
     from = to;
   }
@@ -141,20 +138,26 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   }
 }
 
-Motion Move(const ScaledRecord& record, ContactMotion motion, double amount, models::Memory memory,
-            const models::InitialContact& initial) {
-  Motion moved{amount, initial, {}};
-  if (motion == ContactMotion::kLate) {
-    moved.paths.push_back(MoveLate(record, amount));
-  } else {
-    for (const double side : {1.0, -1.0}) {
-      moved.paths.push_back(MoveBehindGap(record, amount, side, initial));
-    }
+void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, ContactMotion kind,
+            double amount, models::Memory memory, const models::InitialContact& initial,
+            Motion& motion) {
+  motion.amount = amount;
+  motion.initial = initial;
+  motion.paths.resize(kind == ContactMotion::kBehindGap ? 2 : 1);
+  if (kind == ContactMotion::kMeasured) {
+    models::MakeLoadingPath(record.excitation(), turns, memory, initial, motion.paths.front().path);
+    return;
   }
-  for (MovedPath& path : moved.paths) {
-    models::MakeLoadingPath(path.displacement, path.turns, memory, initial, path.path);
+  double side = 1.0;
+  for (auto& [displacement, path] : motion.paths) {
+    displacement.clear();
+    const std::vector<models::Turn> moved =
+        kind == ContactMotion::kLate
+            ? MoveLate(record, turns, amount, displacement)
+            : MoveBehindGap(record, turns, amount, std::exchange(side, -1.0), initial,
+                            displacement);
+    models::MakeLoadingPath(displacement, moved, memory, initial, path);
   }
-  return moved;
 }
 
 }  // namespace mindahl::identification

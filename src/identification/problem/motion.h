@@ -24,10 +24,9 @@ double LongestLag(double samples_a_cycle);
 ///   others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
-/// The displacements of a contact that is moved off its record.
-struct MovedPath {
-  std::vector<double> displacement;  // of every sample
-  std::vector<models::Turn> turns;
+/// A path of a contact along its record.
+struct ContactPath {
+  std::vector<double> displacement;  // of every sample; empty: that of the record
   models::LoadingPath path;
 };
 
@@ -37,12 +36,14 @@ struct MovedPath {
 struct Motion {
   double amount = 0.0;  // by which it is moved
   models::InitialContact initial;
-  std::vector<MovedPath> paths;
+  std::vector<ContactPath> paths;
 };
 
-/// Moves a contact off its record.
+/// Locates a contact, in memory that is used again.
+/// @param turns   of the record's motion; of a lag those of the whole record
 /// @param amount  a lag in the record's scaled time, or the width of a gap
-Motion Move(const ScaledRecord& record, ContactMotion motion, double amount, models::Memory memory,
-            const models::InitialContact& initial);
+void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, ContactMotion kind,
+            double amount, models::Memory memory, const models::InitialContact& initial,
+            Motion& motion);
 
 }  // namespace mindahl::identification

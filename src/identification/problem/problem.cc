@@ -59,16 +59,9 @@ ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) cons
 namespace {
 
 /// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
-/// Dahl's own reads both from its state.
-bool HasPathAsymmetry(const Problem& problem) {
+/// Dahl's own reads both from its state z, that of a joint (models/joint_friction.h).
+bool IsMasing(const Problem& problem) {
   return problem.model->memory == models::Memory::kReturnPoint;
-}
-
-/// True if the response is the state z of a joint, from which its force is read by the load and by
-/// the asymmetry (models/joint_friction.h).
-bool IsStateOfJoint(const Problem& problem, const ScaledRecord& record) {
-  return problem.model->memory == models::Memory::kNone &&
-         (!record.load_ratio.empty() || !problem.parameters[RowOf(TermId::kAsymmetry)].absent);
 }
 
 /// Puts the force in the place of the state z, and its derivatives in the place of those of z.
@@ -89,13 +82,17 @@ void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<do
 
 void Response::Bind(const Problem& problem) {
   problem_ = &problem;
-  const std::size_t records = problem.data->records.size();
-  paths_.assign(records, {});
-  for (std::size_t r = 0; r < records; ++r) paths_[r].turns = TurnsOf(problem.data->records[r]);
-  if (problem.data->load_varies) histories_.resize(records);
-  for (std::size_t r = 0; r < records; ++r) {
-    const ScaledRecord& record = problem.data->records[r];
-    if (record.load_ratio.empty() || !HasPathAsymmetry(problem)) continue;
+  const std::vector<ScaledRecord>& records = problem.data->records;
+  moves_ = problem.parameters.PositionOfMotion();
+  const bool is_late = moves_ < problem.parameters.size() &&
+                       problem.parameters[moves_].term->motion == ContactMotion::kLate;
+  motions_.assign(records.size(), {});
+  turns_.resize(records.size());
+  histories_.resize(records.size());
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const ScaledRecord& record = records[r];
+    turns_[r] = TurnsOf(is_late && record.whole != nullptr ? *record.whole : record);
+    if (record.load_ratio.empty() || !IsMasing(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.states[r], histories_[r]);
   }
@@ -103,140 +100,104 @@ void Response::Bind(const Problem& problem) {
       std::ranges::any_of(std::array{TermId::kSlipSlope, TermId::kSlipCurvature, TermId::kSlipSpeed,
                                      TermId::kSlipTrend, TermId::kDragFraction},
                           [this](TermId id) { return Has(id); });
-  moves_ = problem.parameters.PositionOfMotion();
-  has_moved_ = problem.parameters.moves_contact();
-  motions_.assign(records, {});
-}
-
-models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
-  const models::InitialState state = problem_->states[r];
-  const bool virgin = state == models::InitialState::kVirgin;
-  return {.state = state,
-          .unloaded_displacement = virgin ? theta[problem_->parameters.PositionOfOrigin(r)] : 0.0,
-          .asymmetry = HasPathAsymmetry(*problem_) ? problem_->parameters.AsymmetryAt(theta) : 0.0};
 }
 
 const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
   const ScaledRecord& record = problem_->data->records[r];
-  const Parameter& moves = problem_->parameters[moves_];
-  const models::InitialContact initial = InitialOf(r, theta);
-  const bool is_in_time = moves.term->motion == ContactMotion::kLate;
-  const double unit = is_in_time ? record.units.half_duration : record.units.length;
-  const double amount = moves.ToValue(theta[moves_]) / unit;
+  const Parameters& parameters = problem_->parameters;
+  const models::InitialState state = problem_->states[r];
+  const bool is_virgin = state == models::InitialState::kVirgin;
+  const models::InitialContact initial = {
+      .state = state,
+      .unloaded_displacement = is_virgin ? theta[parameters.PositionOfOrigin(r)] : 0.0,
+      .asymmetry = IsMasing(*problem_) ? parameters.AsymmetryAt(theta) : 0.0};
+  ContactMotion kind = ContactMotion::kMeasured;
+  double amount = 0.0;
+  if (moves_ < parameters.size()) {
+    const Parameter& moves = parameters[moves_];
+    kind = moves.term->motion;
+    amount = moves.ToValue(theta[moves_]) /
+             (kind == ContactMotion::kLate ? record.units.half_duration : record.units.length);
+  }
   Motion& motion = motions_[r];
   const bool is_there = !motion.paths.empty() && motion.amount == amount &&
                         motion.initial.unloaded_displacement == initial.unloaded_displacement &&
                         motion.initial.asymmetry == initial.asymmetry;
-  if (!is_there) {
-    motion = Move(record, moves.term->motion, amount, problem_->model->memory, initial);
-  }
+  if (!is_there) Locate(record, turns_[r], kind, amount, problem_->model->memory, initial, motion);
   return motion;
-}
-
-std::vector<const MovedPath*> Response::BearingPaths(const Motion& motion,
-                                                     const models::NormalizedLaw& law) {
-  std::vector<const MovedPath*> bearing(motion.paths.front().displacement.size());
-  if (motion.paths.size() == 1) {
-    std::ranges::fill(bearing, &motion.paths.front());
-    return bearing;
-  }
-  std::vector<double> t(bearing.size());
-  for (const double sign : {-1.0, 1.0}) {
-    const MovedPath& side = motion.paths[sign > 0 ? 0 : 1];
-    response_.Evaluate(*problem_->model, law, side.path, side.displacement, t);
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      if (sign * t[i] >= 0) bearing[i] = &side;
-    }
-  }
-  return bearing;
-}
-
-const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const double> theta) {
-  CachedPath& cached = paths_[r];
-  const models::InitialContact initial = InitialOf(r, theta);
-  if (cached.unloaded != initial.unloaded_displacement ||
-      cached.path.asymmetry != initial.asymmetry) {
-    models::MakeLoadingPath(problem_->data->records[r].excitation(), cached.turns,
-                            problem_->model->memory, initial, cached.path);
-    cached.unloaded = initial.unloaded_displacement;
-  }
-  return cached.path;
-}
-
-void Response::Evaluate(std::span<const double> theta, std::span<double> t) {
-  Differentiate(theta, t, {});
 }
 
 models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) const {
   return {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kDisplacementOffset],
           columns[TermId::kRigStiffness],
-          HasPathAsymmetry(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
+          IsMasing(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
 }
 
-void Response::DifferentiatePath(std::span<const double> theta, std::size_t r, std::span<double> t,
-                                 const ResponseColumns& columns) {
+void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::span<double> t,
+                            const ResponseColumns& columns) {
   const ScaledRecord& record = problem_->data->records[r];
-  if (has_moved_) {
-    DifferentiateMoved(theta, r, t, columns);
-  } else if (record.imposed == loop::Channel::kForce) {
-    const models::ForcedLaw law{.slip_force = std::exp(theta[kSlipForce]),
-                                .shape_exponent = theta[kShape]};
+  const models::NormalizedLaw law = LawUnder(*problem_, theta, record);
+  if (!record.load_ratio.empty() && IsMasing(*problem_)) {
+    loaded_response_.Evaluate(law, histories_[r], theta[problem_->parameters.PositionOfOrigin(r)],
+                              t, GradientOf(columns));
+    return;
+  }
+  const Motion& motion = MotionOf(r, theta);
+  const auto& [moved, path] = motion.paths.front();
+  if (record.imposed == loop::Channel::kForce) {
     const bool is_below_slip = displacement_.Evaluate(
-        *problem_->model, law, PathOf(r, theta), record.excitation(), t,
+        *problem_->model, {std::exp(theta[kSlipForce]), theta[kShape]}, path, record.force, t,
         {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
     if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
-  } else if (!record.load_ratio.empty() && HasPathAsymmetry(*problem_)) {
-    loaded_response_.Evaluate(LawUnder(*problem_, theta, record), histories_[r],
-                              theta[problem_->parameters.PositionOfOrigin(r)], t,
-                              GradientOf(columns));
+  } else if (motion.paths.size() > 1) {
+    EvaluateBehindGap(law, motion, t, columns);
   } else {
-    response_.Evaluate(*problem_->model, LawUnder(*problem_, theta, record), PathOf(r, theta),
-                       record.displacement, t, GradientOf(columns));
+    response_.Evaluate(*problem_->model, law, path, moved.empty() ? record.displacement : moved, t,
+                       GradientOf(columns));
   }
-}
-
-void Response::DifferentiateMoved(std::span<const double> theta, std::size_t r, std::span<double> t,
-                                  const ResponseColumns& columns) {
-  constexpr std::array kOfPath = {TermId::kSigma, TermId::kAlpha, TermId::kDisplacementOffset,
-                                  TermId::kRigStiffness, TermId::kAsymmetry};
-  const models::NormalizedLaw law = LawUnder(*problem_, theta, problem_->data->records[r]);
-  const Motion& motion = MotionOf(r, theta);
-  const std::vector<const MovedPath*> bearing = BearingPaths(motion, law);
-  for (const MovedPath& side : motion.paths) {
-    const std::size_t size = t.size();
-    std::vector<double> storage((1 + kOfPath.size()) * size);
-    const std::span<double> forces = std::span(storage).first(size);
-    ResponseColumns of_side;
-    for (std::size_t k = 0; k < kOfPath.size(); ++k) {
-      if (columns[kOfPath[k]].empty()) continue;
-      of_side[kOfPath[k]] = std::span(storage).subspan((1 + k) * size, size);
-    }
-    response_.Evaluate(*problem_->model, law, side.path, side.displacement, forces,
-                       GradientOf(of_side));
-    const auto take = [&](std::span<const double> from, std::span<double> to) {
-      for (std::size_t i = 0; i < to.size(); ++i) {
-        if (bearing[i] == &side) to[i] = from[i];
-        if (bearing[i] == nullptr) to[i] = 0.0;  // the gap is being crossed
-      }
-    };
-    take(forces, t);
-    for (const TermId id : kOfPath) take(of_side[id], columns[id]);
-  }
+  if (moves_ >= problem_->parameters.size()) return;
   const std::span<double> by_amount = columns[problem_->parameters[moves_].term->id];
   if (by_amount.empty()) return;
   // The rounding of a difference by this much of θ is 1e-9 of the slip force. It is that of a
   // longer lag and a wider gap: without either the response has a kink.
   constexpr double kStep = 1e-7;
-  Motion here = std::move(motions_[r]);
+  Motion here = std::exchange(motions_[r], {});
   std::vector<double> beside(theta.begin(), theta.end());
   beside[moves_] += kStep;
-  DifferentiateMoved(beside, r, by_amount, {});
+  EvaluatePath(beside, r, by_amount, {});
   for (std::size_t i = 0; i < t.size(); ++i) by_amount[i] = (by_amount[i] - t[i]) / kStep;
   motions_[r] = std::move(here);
 }
 
-void Response::Differentiate(std::span<const double> theta, std::span<double> t,
-                             const ResponseColumns& columns) {
+void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,
+                                 std::span<double> t, const ResponseColumns& columns) {
+  constexpr std::array kOfPath = {TermId::kSigma, TermId::kAlpha, TermId::kDisplacementOffset,
+                                  TermId::kRigStiffness, TermId::kAsymmetry};
+  const std::size_t size = t.size();
+  std::vector<double> storage((1 + kOfPath.size()) * size);
+  const std::span<double> forces = std::span(storage).first(size);
+  ResponseColumns of_side;
+  std::ranges::fill(t, 0.0);  // while the gap is crossed
+  for (std::size_t k = 0; k < kOfPath.size(); ++k) {
+    std::ranges::fill(columns[kOfPath[k]], 0.0);
+    if (columns[kOfPath[k]].empty()) continue;
+    of_side[kOfPath[k]] = std::span(storage).subspan((1 + k) * size, size);
+  }
+  for (const double sign : {-1.0, 1.0}) {
+    const auto& [displacement, path] = motion.paths[sign > 0 ? 0 : 1];
+    response_.Evaluate(*problem_->model, law, path, displacement, forces, GradientOf(of_side));
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!(sign * forces[i] >= 0)) continue;
+      t[i] = forces[i];
+      for (const TermId id : kOfPath) {
+        if (!columns[id].empty()) columns[id][i] = of_side[id][i];
+      }
+    }
+  }
+}
+
+void Response::Evaluate(std::span<const double> theta, std::span<double> t,
+                        const ResponseColumns& columns) {
   AskWhetherToGoOn();
   std::size_t begin = 0;
   for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
@@ -244,11 +205,11 @@ void Response::Differentiate(std::span<const double> theta, std::span<double> t,
     const ResponseColumns parts = columns.Part(begin, record.size());
     const std::span<double> values = t.subspan(begin, record.size());
     begin += record.size();
-    DifferentiatePath(theta, r, values, parts);
-    if (IsStateOfJoint(*problem_, record)) {
+    EvaluatePath(theta, r, values, parts);
+    if (!IsMasing(*problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
       ReadForceOfJoint(record, problem_->parameters.AsymmetryAt(theta), values, parts);
     }
-    if (slip_varies_) ScaleBySlipForce(r, theta, values, parts);
+    if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);
     if (record.load == 1) continue;
     for (double& value : values) value *= record.load;
     for (const std::span<double> column : parts.Wanted()) {
@@ -257,36 +218,28 @@ void Response::Differentiate(std::span<const double> theta, std::span<double> t,
   }
 }
 
-Response::Slip Response::SlipOf(const ScaledRecord& record, std::span<const double> theta) const {
+void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,
+                                std::span<double> response, const ResponseColumns& columns) const {
   const auto value = [&](TermId id) { return theta[RowOf(id)]; };
   const ConstArray position = ArrayOf(record.displacement);
-  Slip slip;
-  slip.factor =
-      1 + (position * (value(TermId::kSlipSlope) + value(TermId::kSlipCurvature) * position) +
-           value(TermId::kSlipTrend) * ArrayOf(record.time));
-  slip.log_speed = Eigen::ArrayXd::Zero(position.size());
-  slip.change = slip.log_speed;
+  // ln(v/v₀), far below zero and finite where nothing moves, and (v/v₀)^m − 1
+  Eigen::ArrayXd log_speed = Eigen::ArrayXd::Zero(position.size());
   if (!record.log_speed.empty()) {
-    slip.log_speed = ArrayOf(record.log_speed) - std::log(record.units.reference_speed);
+    log_speed = ArrayOf(record.log_speed) - std::log(record.units.reference_speed);
   }
+  Eigen::ArrayXd change = Eigen::ArrayXd::Zero(position.size());
   if (Has(TermId::kSlipSpeed)) {
     const double exponent = value(TermId::kSlipSpeedExponent);
-    slip.change = slip.log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
-    slip.factor += value(TermId::kSlipSpeed) * slip.change;
+    change = log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
   }
-  if (Has(TermId::kDragFraction)) slip.factor -= value(TermId::kDragFraction);
-  return slip;
-}
-
-void Response::ScaleBySlipForce(std::size_t r, std::span<const double> theta,
-                                std::span<double> response, const ResponseColumns& columns) const {
-  const ScaledRecord& record = problem_->data->records[r];
-  const auto value = [&](TermId id) { return theta[RowOf(id)]; };
-  const Slip slip = SlipOf(record, theta);
-  const ConstArray position = ArrayOf(record.displacement);
+  const Eigen::ArrayXd factor =
+      1 +
+      (position * (value(TermId::kSlipSlope) + value(TermId::kSlipCurvature) * position) +
+       value(TermId::kSlipTrend) * ArrayOf(record.time)) +
+      value(TermId::kSlipSpeed) * change - value(TermId::kDragFraction);
   Array t(response.data(), std::ssize(response));
   for (const std::span<double> column : columns.Wanted()) {
-    Array(column.data(), t.size()) *= slip.factor;
+    Array(column.data(), t.size()) *= factor;
   }
   const auto set = [&](TermId id, const auto& derivative) {
     if (!columns[id].empty()) Array(columns[id].data(), t.size()) = derivative;
@@ -294,30 +247,28 @@ void Response::ScaleBySlipForce(std::size_t r, std::span<const double> theta,
   set(TermId::kSlipSlope, t * position);
   set(TermId::kSlipCurvature, t * position * position);
   set(TermId::kSlipTrend, t * ArrayOf(record.time));
-  set(TermId::kSlipSpeed, t * slip.change);
-  set(TermId::kSlipSpeedExponent,
-      t * value(TermId::kSlipSpeed) * slip.log_speed * (1 + slip.change));
+  set(TermId::kSlipSpeed, t * change);
+  set(TermId::kSlipSpeedExponent, t * value(TermId::kSlipSpeed) * log_speed * (1 + change));
   if (!Has(TermId::kDragFraction)) {
-    t *= slip.factor;
+    t *= factor;
     return;
   }
   // (v/v₀)^m along the motion, which has no memory.
   const Eigen::ArrayXd dragged =
       ArrayOf(record.velocity) *
-      (value(TermId::kDragExponent) * slip.log_speed - ArrayOf(record.log_speed)).exp();
+      (value(TermId::kDragExponent) * log_speed - ArrayOf(record.log_speed)).exp();
   const double drag = value(TermId::kDragFraction);
   set(TermId::kDragFraction, dragged - t);
-  set(TermId::kDragExponent, drag * dragged * slip.log_speed);
-  t = slip.factor * t + drag * dragged;
+  set(TermId::kDragExponent, drag * dragged * log_speed);
+  t = factor * t + drag * dragged;
 }
 
 namespace {
 
 /// Returns the column of a linear parameter in a record, or its derivative by the parameter that
 /// shapes it (Term::shapes).
-Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size_t r,
+Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const ScaledRecord& record,
                         std::span<const double> theta, bool derivative) {
-  const ScaledRecord& record = problem.data->records[r];
   const Parameter& of = problem.parameters[parameter];
   const TermId id = of.term->id;
   const ConstArray position = ArrayOf(record.displacement);
@@ -353,16 +304,12 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
       const double shift =
           (record.units.displacement_reference - first.displacement_reference) / first.length;
       const double rate = 2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)]);
-      const Eigen::ArrayXd phase = rate * (position + shift);
       const bool is_sine = id == TermId::kRippleSineUp || id == TermId::kRippleSineDown;
       const bool is_up = id == TermId::kRippleCosineUp || id == TermId::kRippleSineUp;
-      Eigen::ArrayXd wave(phase.size());
-      if (is_sine == derivative) {
-        wave = phase.cos();
-      } else {
-        wave = phase.sin();
-      }
-      if (derivative) wave *= (is_sine ? -1.0 : 1.0) * phase;
+      const Eigen::ArrayXd wave = (rate * (position + shift)).unaryExpr([&](double phase) {
+        if (!derivative) return is_sine ? std::sin(phase) : std::cos(phase);
+        return phase * (is_sine ? -std::cos(phase) : std::sin(phase));
+      });
       const std::vector<double> direction = DirectionsOf(record.displacement, record.reversals);
       return ((is_up ? 1.0 : -1.0) * ArrayOf(direction) > 0).select(wave, 0.0);
     }
@@ -376,33 +323,61 @@ bool IsInRecord(const Parameter& parameter, std::size_t record) {
          (parameter.term->scope == Scope::kContact || parameter.record == record);
 }
 
-/// True if t depends on a parameter by a derivative of its own.
-bool EntersResponse(const Problem& problem, std::size_t parameter) {
-  const Parameter& of = problem.parameters[parameter];
-  return !of.absent && !of.term->is_linear && !ShapesColumns(problem, parameter);
+/// Adds a multiple of ColumnOf() of every sample.
+void AddColumnOf(const Problem& problem, std::size_t parameter, std::span<const double> theta,
+                 bool derivative, double factor, std::span<double> to) {
+  double* part = to.data();
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    Array rows(std::exchange(part, part + record.size()), std::ssize(record.force));
+    if (!IsInRecord(problem.parameters[parameter], r)) continue;
+    rows += factor * ColumnOf(problem, parameter, record, theta, derivative);
+  }
+}
+
+/// The derivative of scale·t over the scale by a parameter, in multiples of t and of derivatives
+/// of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
+struct ChainRule {
+  double of_t = 0.0;
+  double by_rate = 0.0;  // that of TermId::kSigma
+  double by_rig = 0.0;
+  double by_itself = 0.0;
+};
+
+ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
+                      const ScaledRecord& record) {
+  switch (parameter.term->id) {
+    case TermId::kSigma:
+      if (problem.data->is_forced()) return {.of_t = -1};
+      return {.by_rate = 1};
+    case TermId::kSlipForce:
+      return {.of_t = 1, .by_rate = -1, .by_rig = problem.parameters.has_rig() ? 1.0 : 0.0};
+    case TermId::kRigStiffness:
+      return {.by_rig = -1};
+    case TermId::kLoadExponent:
+      return {.by_rate = record.log_load};
+    default:
+      return {.by_itself =
+                  parameter.term->is_linear || !parameter.term->shapes.empty() ? 0.0 : 1.0};
+  }
 }
 
 }  // namespace
 
-void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
-               std::span<const double> theta, double factor, std::span<double> to) {
-  const Parameter& of = problem.parameters[parameter];
-  if (!IsInRecord(of, r)) return;
-  Array(to.data(), std::ssize(to)) +=
-      factor * ColumnOf(problem, parameter, r, theta, /*derivative=*/false);
+void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
+               double factor, std::span<double> to) {
+  AddColumnOf(problem, parameter, theta, /*derivative=*/false, factor, to);
 }
 
-void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t r,
+void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
                             std::span<const double> theta, std::span<double> to) {
   const Term& term = *problem.parameters[parameter].term;
-  if (term.is_linear) AddColumn(problem, parameter, r, theta, 1.0, to);
+  if (term.is_linear) AddColumn(problem, parameter, theta, 1.0, to);
   if (term.shapes.empty()) return;
   for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
     const Term& linear = *problem.parameters[q].term;
-    const bool is_shaped = linear.is_linear && linear.name.starts_with(term.shapes);
-    if (!is_shaped || !IsInRecord(problem.parameters[q], r)) continue;
-    Array(to.data(), std::ssize(to)) +=
-        theta[q] * ColumnOf(problem, q, r, theta, /*derivative=*/true);
+    if (!linear.is_linear || !linear.name.starts_with(term.shapes)) continue;
+    AddColumnOf(problem, q, theta, /*derivative=*/true, theta[q], to);
   }
 }
 
@@ -413,14 +388,16 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (double& value : predicted) value *= scale;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    const Parameter& parameter = problem.parameters[p];
-    if (!parameter.term->is_linear || theta[p] == 0) continue;
-    std::size_t begin = 0;
-    for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-      const std::size_t count = problem.data->records[r].size();
-      AddColumn(problem, p, r, theta, theta[p], predicted.subspan(begin, count));
-      begin += count;
-    }
+    if (!problem.parameters[p].term->is_linear || theta[p] == 0) continue;
+    AddColumn(problem, p, theta, theta[p], predicted);
+  }
+}
+
+/// Weights values of every sample.
+void Weight(const ScaledRecords& data, std::span<double> values) {
+  std::size_t k = 0;
+  for (const ScaledRecord& record : data.records) {
+    for (const double weight : record.root_weight) values[k++] *= weight;
   }
 }
 
@@ -429,8 +406,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
   std::size_t k = 0;
   for (const ScaledRecord& record : data.records) {
-    const std::span<const double> measured = record.response();
-    for (std::size_t i = 0; i < measured.size(); ++i, ++k) predicted[k] -= measured[i];
+    for (const double measured : record.response()) predicted[k++] -= measured;
   }
 }
 
@@ -444,27 +420,24 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
                            Response& response, std::span<const std::size_t> parameters,
                            std::span<double> t, std::span<double> columns) {
   const std::size_t samples = problem.size();
-  const bool is_forced = problem.data->is_forced();
-  // t depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ. Each
-  // derivative of t is computed once, for however many parameters.
-  std::vector<TermId> wanted;
-  for (const std::size_t p : parameters) {
-    const TermId id = problem.parameters[p].term->id;
-    const bool is_by_rate = id == TermId::kSlipForce || id == TermId::kLoadExponent;
-    if (is_by_rate) wanted.push_back(TermId::kSigma);
-    if (id == TermId::kSlipForce && problem.parameters.has_rig()) {
-      wanted.push_back(TermId::kRigStiffness);
-    }
-    if (!is_by_rate && EntersResponse(problem, p)) wanted.push_back(id);
-  }
-  std::ranges::sort(wanted);
-  wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
-  const std::span<double> scratch = response.Scratch(wanted.size() * samples);
+  // Each derivative of t is computed once, for however many parameters.
   ResponseColumns gradient;
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    gradient[wanted[k]] = scratch.subspan(k * samples, samples);
+  const std::span<double> scratch = response.Scratch((parameters.size() + 2) * samples);
+  std::size_t used = 0;
+  const auto want = [&](TermId id, double factor) {
+    if (factor == 0 || !gradient[id].empty()) return;
+    gradient[id] = scratch.subspan(samples * used++, samples);
+  };
+  for (const std::size_t p : parameters) {
+    for (const ScaledRecord& record : problem.data->records) {
+      const Parameter& parameter = problem.parameters[p];
+      const ChainRule rule = ChainRuleOf(problem, parameter, record);
+      want(TermId::kSigma, rule.by_rate);
+      want(TermId::kRigStiffness, rule.by_rig);
+      want(parameter.term->id, rule.by_itself);
+    }
   }
-  response.Differentiate(theta, t, gradient);
+  response.Evaluate(theta, t, gradient);
   std::ranges::fill(columns, 0.0);
   std::size_t begin = 0;
   for (const std::size_t p : parameters) {
@@ -474,32 +447,15 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
       const ScaledRecord& record = problem.data->records[r];
       const std::size_t first = std::exchange(end, end + record.size());
       if (!IsInRecord(parameter, r)) continue;
-      const auto of = [&](TermId id) {
-        return ArrayOf(gradient[id].subspan(first, record.size()));
+      Array column(columns.data() + begin + first, std::ssize(record.force));
+      const auto add = [&](double factor, std::span<const double> derivative) {
+        if (factor != 0) column += factor * ArrayOf(derivative.subspan(first, record.size()));
       };
-      const ConstArray own = ArrayOf(t.subspan(first, record.size()));
-      Array column(columns.data() + begin + first, own.size());
-      switch (parameter.term->id) {
-        case TermId::kSigma:
-          if (is_forced) {
-            column = -own;
-          } else {
-            column = of(TermId::kSigma);
-          }
-          break;
-        case TermId::kSlipForce:
-          column = own - of(TermId::kSigma);
-          if (problem.parameters.has_rig()) column += of(TermId::kRigStiffness);
-          break;
-        case TermId::kRigStiffness:
-          column = -of(TermId::kRigStiffness);
-          break;
-        case TermId::kLoadExponent:
-          column = record.log_load * of(TermId::kSigma);
-          break;
-        default:
-          if (EntersResponse(problem, p)) column = of(parameter.term->id);
-      }
+      const ChainRule rule = ChainRuleOf(problem, parameter, record);
+      add(rule.of_t, t);
+      add(rule.by_rate, gradient[TermId::kSigma]);
+      add(rule.by_rig, gradient[TermId::kRigStiffness]);
+      add(rule.by_itself, gradient[parameter.term->id]);
     }
     begin += samples;
   }
@@ -512,22 +468,14 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
   DifferentiateResponse(problem, theta, response, columns, residual, jacobian);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (double& value : jacobian) value *= scale;
-  std::size_t k = 0;
-  for (const std::size_t p : columns) {
-    for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-      const ScaledRecord& record = problem.data->records[r];
-      const std::span<double> column = jacobian.subspan(k, record.size());
-      k += record.size();
-      AddDerivativeOfColumns(problem, p, r, theta, column);
-      for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
-    }
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::span<double> column = jacobian.subspan(k * problem.size(), problem.size());
+    AddDerivativeOfColumns(problem, columns[k], theta, column);
+    Weight(*problem.data, column);
   }
   Complete(problem, theta, residual);
   TakeOffMeasured(*problem.data, residual);
-  k = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const double weight : record.root_weight) residual[k++] *= weight;
-  }
+  Weight(*problem.data, residual);
 }
 
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,

@@ -56,15 +56,14 @@ class ResponseColumns {
 /// where a record is under one load, by the elements' (models/load_zones.h) where it varies. Of
 /// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
 /// that has a force beyond slip. Keeps the loading paths, which depend on the point only where a
-/// contact is unloaded, by its lag and its asymmetry, and its buffers.
+/// contact is unloaded, by its lag, its gap and its asymmetry, and its buffers.
 class Response {
  public:
   void Bind(const Problem& problem);
-  void Evaluate(std::span<const double> theta, std::span<double> t);
-  void Differentiate(std::span<const double> theta, std::span<double> t,
-                     const ResponseColumns& columns);
-  /// Returns the loading path of a record of the problem that is bound, whose contact is not moved.
-  const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
+  void Evaluate(std::span<const double> theta, std::span<double> t,
+                const ResponseColumns& columns = {});
+  /// Returns where the contact of a record is, in the problem that is bound.
+  const Motion& MotionOf(std::size_t record, std::span<const double> theta);
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
     if (scratch_.size() < size) scratch_.resize(size);
@@ -72,48 +71,27 @@ class Response {
   }
 
  private:
-  /// The slip force over Tc at every sample, and how it depends on the speed there.
-  struct Slip {
-    Eigen::ArrayXd factor;
-    Eigen::ArrayXd log_speed;  // ln(v/v₀); far below zero, and finite, where it does not move
-    Eigen::ArrayXd change;     // (v/v₀)^m − 1
-  };
-  [[nodiscard]] Slip SlipOf(const ScaledRecord& record, std::span<const double> theta) const;
-  /// Differentiates the response of one record by its path, over the slip force of the path.
-  void DifferentiatePath(std::span<const double> theta, std::size_t record, std::span<double> t,
-                         const ResponseColumns& columns);
-  void DifferentiateMoved(std::span<const double> theta, std::size_t record, std::span<double> t,
-                          const ResponseColumns& columns);
+  /// Evaluates one record by its path, over the slip force of the path.
+  void EvaluatePath(std::span<const double> theta, std::size_t record, std::span<double> t,
+                    const ResponseColumns& columns);
+  void EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,
+                         std::span<double> t, const ResponseColumns& columns);
   /// Multiplies t and its derivatives by the slip force at each sample, and adds the drag.
-  void ScaleBySlipForce(std::size_t record, std::span<const double> theta,
+  void ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,
                         std::span<double> response, const ResponseColumns& columns) const;
   [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
-  [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
-                                                 std::span<const double> theta) const;
-  const Motion& MotionOf(std::size_t record, std::span<const double> theta);
-  /// Returns the path that bears the force of each sample; null while a gap is crossed.
-  std::vector<const MovedPath*> BearingPaths(const Motion& motion,
-                                             const models::NormalizedLaw& law);
   [[nodiscard]] bool Has(TermId id) const { return !problem_->parameters[RowOf(id)].absent; }
 
-  struct CachedPath {
-    std::vector<models::Turn> turns;  // of the motion
-    models::LoadingPath path;
-    std::optional<double> unloaded;  // empty until the path is made
-  };
-
   const Problem* problem_ = nullptr;
-  std::vector<CachedPath> paths_;
-  models::NormalizedResponse response_;
-  models::NormalizedDisplacement displacement_;
-  std::vector<double> scratch_;
-  bool slip_varies_ = false;  // over positions, speeds or time
-  // For a problem with a term that moves the contact:
-  std::size_t moves_ = 0;  // its position
-  bool has_moved_ = false;
+  std::size_t moves_ = 0;                         // of the parameter that moves the contact
+  std::vector<std::vector<models::Turn>> turns_;  // of each record's motion
   std::vector<Motion> motions_;                   // of each record
   std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
+  models::NormalizedResponse response_;
+  models::NormalizedDisplacement displacement_;
   models::NormalizedLoadedResponse loaded_response_;
+  std::vector<double> scratch_;
+  bool slip_varies_ = false;  // over positions, speeds or time
 };
 
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
@@ -127,21 +105,18 @@ void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
                       std::span<double> residual);
 
-/// Adds a multiple of the column of a linear parameter, without weights; nothing where it is
-/// another record's.
+/// Adds a multiple of the column of a linear parameter, of every sample; no weight.
 /// @param theta  of all parameters: a column may depend on some (Term::shapes)
-/// @param to     of the record's samples
-void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record,
-               std::span<const double> theta, double factor, std::span<double> to);
+void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
+               double factor, std::span<double> to);
 
 /// True if columns of linear parameters depend on this one.
 bool ShapesColumns(const Problem& problem, std::size_t parameter);
 
-/// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, without weights: its own column where it is linear,
-/// else those of the columns that it shapes.
+/// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, of every sample, no weight: its own column where it is
+/// linear, else those of the columns that it shapes.
 /// @param theta  of all parameters, the linear ones included
-/// @param to     of the record's samples
-void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t record,
+void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
                             std::span<const double> theta, std::span<double> to);
 
 /// Computes t and the derivatives of scale·t by parameters over the scale, of all samples, without

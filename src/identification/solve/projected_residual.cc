@@ -109,20 +109,18 @@ void ProjectedResidual::FactoriseColumns() {
   weight_.resize(size);
   measured_.resize(size);
   std::size_t row = 0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
+  for (const ScaledRecord& record : data.records) {
     std::ranges::copy(record.root_weight, weight_.data() + row);
     std::ranges::copy(record.response(), measured_.data() + row);
-    const std::span<double> rows = Writable(measured_).subspan(row, record.size());
-    for (std::size_t p = 0; p < theta_.size(); ++p) {
-      if (!problem_->parameters[p].term->is_linear || theta_[p] == 0) continue;
-      AddColumn(*problem_, p, r, theta_, -theta_[p], rows);
-    }
-    for (std::size_t k = 0; k < eliminated.size(); ++k) {
-      double* const column = columns.col(static_cast<Eigen::Index>(k)).data();
-      AddColumn(*problem_, eliminated[k], r, theta_, 1.0, {column + row, record.size()});
-    }
     row += record.size();
+  }
+  for (std::size_t p = 0; p < theta_.size(); ++p) {
+    if (!problem_->parameters[p].term->is_linear || theta_[p] == 0) continue;
+    AddColumn(*problem_, p, theta_, -theta_[p], Writable(measured_));
+  }
+  for (std::size_t k = 0; k < eliminated.size(); ++k) {
+    double* const column = columns.col(static_cast<Eigen::Index>(k)).data();
+    AddColumn(*problem_, eliminated[k], theta_, 1.0, {column, problem_->size()});
   }
   measured_.array() *= weight_.array();
   columns.array().colwise() *= weight_.array();
@@ -228,11 +226,8 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   const std::vector<double> theta = Theta();
   double* column = derivatives_.data();
   for (const std::size_t p : places_) {
-    for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
-      const std::size_t size = problem_->data->records[r].size();
-      AddDerivativeOfColumns(*problem_, p, r, theta, {column, size});
-      column += size;
-    }
+    AddDerivativeOfColumns(*problem_, p, theta, {column, problem_->size()});
+    column += problem_->size();
   }
   derivatives_.array().colwise() *= weight_.array();
   derivatives_ -= basis_ * (basis_.transpose() * derivatives_);
