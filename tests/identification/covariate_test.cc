@@ -90,10 +90,10 @@ TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
       {.name = "volts", .unit = "V", .values = record.covariates[0].values});
   for (double& value : record.covariates.back().values) value = 0.5 - 0.02 * value;
   EXPECT_THAT(RefusalOf({record}, {.covariates = {"p", "volts"}}),
-              HasSubstr("'p' and 'volts' are one channel"));
+              HasSubstr("'volts' is a linear function of 'p'"));
   record.covariates.back().values = record.force;
   EXPECT_THAT(RefusalOf({record}, {.covariates = {"volts"}}),
-              HasSubstr("'volts' is the channel of the force"));
+              HasSubstr("'volts' is a linear function of 'force'"));
 }
 
 TEST(Covariate, HasANameThatNeedsNoQuoting) {

@@ -34,12 +34,6 @@ bool AreOneChannel(std::span<const double> one, std::span<const double> other) {
   return correlation * correlation >= 1 - kOwnPart * kOwnPart;
 }
 
-bool AreOneChannel(const ScaledRecords& data, std::size_t one, std::size_t other) {
-  return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
-    return AreOneChannel(record.covariates[one], record.covariates[other]);
-  });
-}
-
 namespace {
 
 struct ColumnRange {
@@ -53,14 +47,10 @@ ColumnRange RangeOf(std::span<const double> values) {
   return {lowest + half, half};
 }
 
-constexpr double kSmallestScale = 1e-100;
-constexpr double kLargestScale = 1e100;
-
 /// Squares, products and ratios of displacements and forces must neither overflow nor vanish.
 void RequireScale(std::string_view quantity, double half_range) {
-  if (half_range < kSmallestScale || half_range > kLargestScale) {
-    ThrowInvalid(quantity, half_range, "must lie between 1e-100 and 1e100: choose other units");
-  }
+  if (half_range >= 1e-100 && half_range <= 1e100) return;
+  ThrowInvalid(quantity, half_range, "must lie between 1e-100 and 1e100: choose other units");
 }
 
 /// Central differences by time, one-sided at the ends and where time stands still.
@@ -112,34 +102,9 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
   return sum > 0 ? sum / path : 1.0;
 }
 
-struct MeasuredLoad {
-  double mean = 0.0;       // [N]
-  double amplitude = 0.0;  // [N] of a sine of the same standard deviation, but for white noise
-  double magnitude = 0.0;  // [N], mean of |N|
-};
-
-/// Measures the load of the samples that count.
-MeasuredLoad MeasureLoad(const loop::PreparedRecord& record) {
-  std::vector<double> counted;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (record.counts[i] != 0) counted.push_back(record.record.normal_load[i]);
-  }
-  if (counted.empty()) return {};
-  const Eigen::Map<const Eigen::ArrayXd> load(counted.data(), std::ssize(counted));
-  const double noise = loop::NoiseByDifferences(counted, 1);
-  const double variance = (load - load.mean()).square().mean() - noise * noise;
-  return {load.mean(), std::sqrt(2 * std::max(variance, 0.0)), load.abs().mean()};
-}
-
-/// True for Dahl's own law, whose force follows a load of either sign (models/joint_friction.h).
-bool HasStateOfJoint(const FitOptions& options) {
-  return options.model->memory == models::Memory::kNone;
-}
-
 /// True if the law models a load that varies. The displacement is then that of the contact alone;
 /// of Masing's law it is read with the force, and slip is as easy in either direction.
-bool KnowsVaryingLoads(const FitOptions& options) {
-  const bool is_joint = HasStateOfJoint(options);
+bool KnowsVaryingLoads(const FitOptions& options, bool is_joint) {
   return std::ranges::none_of(Terms(), [&](const Term& term) {
     const bool is_other =
         term.id == TermId::kRigStiffness ||
@@ -150,65 +115,61 @@ bool KnowsVaryingLoads(const FitOptions& options) {
 }
 
 /// Takes the loads within a record from their column.
-void TakeVaryingLoad(ScaledRecord& target, const loop::PreparedRecord& record,
-                     const MeasuredLoad& measured, bool is_known, bool has_sign) {
-  for (const double load : record.record.normal_load) {
-    const double ratio = (has_sign ? load : std::max(load, 0.0)) / measured.mean;
+/// @returns their mean over the samples that count [N]
+double TakeVaryingLoad(const loop::PreparedRecord& record, const FitOptions& options,
+                       ScaledRecord& target) {
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.counts[i] != 0) counted.push_back(record.record.normal_load[i]);
+  }
+  if (counted.empty()) return 0.0;
+  const Eigen::Map<const Eigen::ArrayXd> load(counted.data(), std::ssize(counted));
+  const double noise = loop::NoiseByDifferences(counted, 1);
+  const double variance = (load - load.mean()).square().mean() - noise * noise;
+  const double amplitude = std::sqrt(2 * std::max(variance, 0.0));  // of a sine
+  // The force of Dahl's own law follows a load of either sign (models/joint_friction.h).
+  const bool is_joint = options.model->memory == models::Memory::kNone;
+  const bool is_known = KnowsVaryingLoads(options, is_joint);
+  const bool has_sign = is_joint && is_known;
+  const double mean = has_sign ? load.abs().mean() : load.mean();
+  const bool varies =
+      (has_sign && load.mean() < 0) || amplitude > options.thresholds.load_change * mean;
+  if (!(mean > 0) || !varies) return mean;
+  for (const double at : record.record.normal_load) {
+    const double ratio = (has_sign ? at : std::max(at, 0.0)) / mean;
     (is_known ? target.load_ratio : target.load_change).push_back(is_known ? ratio : ratio - 1);
   }
-}
-
-void RequireLoads(const std::vector<double>& loads, std::size_t records) {
-  for (const double load : loads) RequirePositive("normal load [N]", load);
-  if (loads.size() == 1 || loads.size() == records || loads.empty()) return;
-  throw InvalidArgument(fmt::format(
-      "{} normal loads for {} records: give one for all, or one a record", loads.size(), records));
+  return mean;
 }
 
 void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
                const FitOptions& options) {
-  RequireLoads(options.normal_loads, records.records.size());
-  bool all_known = true;
-  for (std::size_t r = 0; r < records.records.size(); ++r) {
-    const loop::PreparedRecord& record = records.records[r];
-    MeasuredLoad measured;
-    if (!record.record.normal_load.empty()) {
-      measured = MeasureLoad(record);
-      const bool has_sign = HasStateOfJoint(options) && KnowsVaryingLoads(options);
-      const bool is_reversed = has_sign && measured.mean < 0;
-      if (has_sign) measured.mean = measured.magnitude;
-      const bool varies =
-          measured.mean > 0 &&
-          (is_reversed || measured.amplitude > options.thresholds.load_change * measured.mean);
-      const bool is_known = varies && KnowsVaryingLoads(options);
-      if (varies) TakeVaryingLoad(data.records[r], record, measured, is_known, has_sign);
-      data.load_varies = data.load_varies || is_known;
-    }
-    const double mean = options.normal_loads.empty()
-                            ? measured.mean
-                            : options.normal_loads[std::min(r, options.normal_loads.size() - 1)];
-    data.mean_load.push_back(mean);
-    all_known = all_known && mean > 0;
+  const std::vector<double>& given = options.normal_loads;
+  for (const double load : given) RequirePositive("normal load [N]", load);
+  if (given.size() > 1 && given.size() != data.records.size()) {
+    throw InvalidArgument(
+        fmt::format("{} normal loads for {} records: give one for all, or one a record",
+                    given.size(), data.records.size()));
   }
-  if (!all_known) {
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const loop::PreparedRecord& record = records.records[r];
+    const bool is_measured = !record.record.normal_load.empty();
+    const double mean = is_measured ? TakeVaryingLoad(record, options, data.records[r]) : 0.0;
+    data.load_varies = data.load_varies || !data.records[r].load_ratio.empty();
+    data.mean_load.push_back(given.empty() ? mean : given[std::min(r, given.size() - 1)]);
+  }
+  const auto [least, greatest] = std::ranges::minmax(data.mean_load);
+  if (!(least > 0)) {
     data.mean_load.clear();
     return;
   }
-  for (const double load : data.mean_load) data.reference_load += load;
-  data.reference_load /= static_cast<double>(data.mean_load.size());
-  const auto [least, greatest] = std::ranges::minmax(data.mean_load);
+  data.reference_load = loop::Mean(data.mean_load);
   data.is_load_series = greatest > (1 + options.thresholds.load_change) * least;
   if (!data.is_load_series) return;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     data.records[r].load = data.mean_load[r] / data.reference_load;
     data.records[r].log_load = std::log(data.records[r].load);
   }
-}
-
-/// nullptr where the record has none of that name.
-const loop::Covariate* FindCovariate(const loop::RecordView& record, std::string_view name) {
-  const auto found = std::ranges::find(record.covariates, name, &loop::Covariate::name);
-  return found == record.covariates.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -253,23 +214,15 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   ScaledRecords scaled;
   scaled.sense = records.force_sense;
   scaled.excitation = records.excitation;
-  scaled.length = 0.0;
-  scaled.force = 0.0;
+  scaled.length = scaled.force = 0.0;
   scaled.counted = records.counted();
   for (const loop::PreparedRecord& record : records.records) {
     scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
     scaled.force = std::max(scaled.force, RangeOf(record.force()).half);
   }
-  if (!(scaled.length > 0)) {
-    throw InvalidArgument("the displacement never changes: a fit needs a moving contact");
-  }
-  if (!(scaled.force > 0)) {
-    throw InvalidArgument("the force never changes: a fit needs a loaded contact");
-  }
   RequireScale("half range of the displacement [m]", scaled.length);
   RequireScale("half range of the force [N]", scaled.force);
   const double sense = scaled.sense;
-  scaled.records.reserve(records.records.size());
   for (const loop::PreparedRecord& prepared : records.records) {
     const std::span<const double> displacement = prepared.displacement();
     const std::span<const double> force = prepared.force();
@@ -279,6 +232,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     target.imposed = records.excitation;
     target.is_smoothed = prepared.displacement_noise > 0;
     target.reversals = prepared.reversals;
+    target.counts = prepared.counts;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
     if (!time.empty() && last > first) RequireScale("half duration [s]", last / 2 - first / 2);
@@ -290,17 +244,17 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
                     .force_reference = sense * RangeOf(force).middle,
                     .displacement_reference = RangeOf(displacement).middle};
     for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
-      column->resize(size);
+      column->reserve(size);
     }
-    const TermUnits units = target.units;
     for (std::size_t i = 0; i < size; ++i) {
+      const TermUnits& units = target.units;
       const double at = time.empty() ? static_cast<double>(i) : time[i];
-      target.displacement[i] = (displacement[i] - units.displacement_reference) / units.length;
-      target.force[i] = (sense * force[i] - units.force_reference) / units.force;
-      target.time[i] = (at - first) / units.half_duration - 1;
-      target.root_weight[i] = prepared.counts[i] != 0 ? 1.0 : 0.0;
+      target.displacement.push_back((displacement[i] - units.displacement_reference) /
+                                    units.length);
+      target.force.push_back((sense * force[i] - units.force_reference) / units.force);
+      target.time.push_back((at - first) / units.half_duration - 1);
+      target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
     }
-    target.counts = prepared.counts;
     if (time.empty()) continue;
     const double unit = scaled.records.front().units.half_duration;
     target.velocity = DerivativeOf(target.displacement, target, unit);
@@ -333,61 +287,56 @@ std::vector<double> DirectionsOf(std::span<const double> excitation,
   return directions;
 }
 
-namespace {
-
-void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
+                ScaledRecords& data) {
   const bool asks_speed = std::ranges::any_of(
       std::array{TermId::kSpeedExponent, TermId::kSlipSpeedExponent, TermId::kDragExponent},
       [&](TermId id) { return HasTerm(options, id); });
   const double unit = data.records.front().units.half_duration;
+  const double reference = asks_speed ? SpeedInTheMiddle(data) : 1.0;
   for (ScaledRecord& record : data.records) {
+    record.units.reference_speed = reference;
     if (record.velocity.empty()) continue;
     if (asks_speed) FillLogSpeed(record);
     if (HasTerm(options, TermId::kInertia)) {
       record.acceleration = DerivativeOf(record.velocity, record, unit);
     }
   }
-  const double reference = asks_speed ? SpeedInTheMiddle(data) : 1.0;
-  for (ScaledRecord& record : data.records) record.units.reference_speed = reference;
-}
-
-}  // namespace
-
-void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
-                ScaledRecords& data) {
-  AddColumnsOfTerms(options, data);
   for (const std::string& name : options.covariates) {
     std::vector<const loop::Covariate*> columns;
     double scale = 0.0;
     for (const loop::PreparedRecord& record : records.records) {
-      columns.push_back(FindCovariate(record.record, name));
-      if (columns.back() == nullptr) {
-        throw InvalidArgument(fmt::format("record {} has no covariate '{}'", columns.size(), name));
+      const auto& all = record.record.covariates;
+      const auto found = std::ranges::find(all, name, &loop::Covariate::name);
+      if (found == all.end()) {
+        throw InvalidArgument(
+            fmt::format("record {} has no covariate '{}'", columns.size() + 1, name));
       }
-      scale = std::max(scale, RangeOf(columns.back()->values).half);
+      columns.push_back(&*found);
+      scale = std::max(scale, RangeOf(found->values).half);
     }
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
-    const std::size_t last = data.covariates.size();
+    const std::size_t own = data.covariates.size();
     data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
     for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const double reference = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
+      const double reference_value = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
       std::vector<double>& column = data.records[r].covariates.emplace_back();
-      for (const double value : columns[r]->values) column.push_back((value - reference) / scale);
+      for (const double value : columns[r]->values) {
+        column.push_back((value - reference_value) / scale);
+      }
     }
-    const bool is_force = std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
-      return AreOneChannel(record.covariates[last], record.force);
-    });
-    if (is_force && !options.fixed.contains(NameOfCovariate(name))) {
-      throw InvalidArgument(fmt::format(
-          "the covariate '{}' is the channel of the force, a linear function of it: leave it out",
-          name));
-    }
-    for (std::size_t other = 0; other < last; ++other) {
-      if (!AreOneChannel(data, other, last)) continue;
-      throw InvalidArgument(fmt::format(
-          "the covariates '{}' and '{}' are one channel, the one a linear function of the other: "
-          "name one of them",
-          options.covariates[other], name));
+    for (std::size_t other = 0; other <= own; ++other) {
+      const bool is_force = other == own;
+      if (is_force && options.fixed.contains(NameOfCovariate(name))) continue;
+      const auto is_one = [&](const ScaledRecord& record) {
+        return AreOneChannel(record.covariates[own],
+                             is_force ? record.force : record.covariates[other]);
+      };
+      if (!std::ranges::all_of(data.records, is_one)) continue;
+      throw InvalidArgument(
+          fmt::format("the covariate '{}' is a linear function of '{}', one channel with it: leave "
+                      "one of them out",
+                      name, is_force ? "force" : options.covariates[other]));
     }
   }
 }
@@ -395,7 +344,7 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
 const ScaledRecords& ThinnedRecords::Get() {
   if (thin_) return *thin_;
   // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
-  constexpr std::size_t kKeptOfAStroke = 8;
+  constexpr double kKeptOfAStroke = 8.0;
   // Strokes that are thinned so: more are thinned to their ends and one sample in between.
   constexpr std::size_t kDenseStrokes = 16;
   thin_ = data_;
@@ -405,23 +354,18 @@ const ScaledRecords& ThinnedRecords::Get() {
     const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
     // Under a load that varies the path between samples is part of the history.
     const bool is_dense = strokes.size() <= kDenseStrokes || !record.load_ratio.empty();
-    const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
+    const double kept = is_dense ? kKeptOfAStroke : 2.0;
     std::vector<std::size_t> samples = {0};
-    samples.reserve(std::min(record.size(), strokes.size() * (kept + 1) + 1));
     std::vector<std::size_t> turns;
-    turns.reserve(record.reversals.size());
     for (const auto& [begin, end, direction] : strokes) {
       const double way = record.displacement[end] - record.displacement[begin];
-      std::size_t next = 1;
+      double next = 1.0;
       for (std::size_t i = begin + 1; way != 0 && i < end && next < kept; ++i) {
         const double share = (record.displacement[i] - record.displacement[begin]) / way;
-        const double wanted = static_cast<double>(next * next) / static_cast<double>(kept * kept);
-        if (!(share >= wanted)) continue;
+        const double passed = kept * std::sqrt(std::max(share, 0.0));
+        if (passed < next) continue;
         samples.push_back(i);
-        while (next < kept &&
-               share * static_cast<double>(kept * kept) >= static_cast<double>(next * next)) {
-          ++next;
-        }
+        next = std::floor(passed) + 1;
       }
       if (end > begin) samples.push_back(end);
       if (turns.size() < record.reversals.size()) turns.push_back(samples.size() - 1);

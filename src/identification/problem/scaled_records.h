@@ -145,7 +145,4 @@ double ColumnCorrelation(std::span<const double> one, std::span<const double> ot
 /// a tenth of their deviation.
 bool AreOneChannel(std::span<const double> one, std::span<const double> other);
 
-/// True if two covariates are that in every record.
-bool AreOneChannel(const ScaledRecords& data, std::size_t one, std::size_t other);
-
 }  // namespace mindahl::identification
