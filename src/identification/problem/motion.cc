@@ -112,7 +112,7 @@ double LongestLag(double samples_a_cycle) {
 }
 
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
-  if (!HasTerm(options, TermId::kLag)) return;
+  if (!HasTerm(options, TermId::kLag) || records.excitation == loop::Channel::kForce) return;
   const loop::PreparedRecord& first = records.records.front();
   const Interval lags = LagsOf(options, first);
   for (std::size_t r = 0; r < records.records.size(); ++r) {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -19,52 +18,44 @@ namespace mindahl::identification {
 
 namespace {
 
-/// Returns position and force of samples in the second halves of the strokes of one direction, a
-/// row each, some 500; of the forces a cubic over the position is taken off.
-Eigen::MatrixXd SlidingForces(const ScaledRecords& data, double direction) {
-  constexpr double kMayStick = 0.5;
-  constexpr std::size_t kMostSamples = 500;
-  constexpr Eigen::Index kFewest = 12;  // for a cubic and a wave to be distinguished from noise
-  std::vector<std::array<double, 2>> sliding;
-  for (const ScaledRecord& record : data.records) {
-    for (const Stroke& stroke : StrokesOf(record.displacement, record.reversals)) {
-      const double from = record.displacement[stroke.begin];
-      const double travel = record.displacement[stroke.end] - from;
-      for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
-        const double position = record.displacement[i];
-        const bool slides = (position - from) / travel >= kMayStick;
-        if (stroke.direction != direction || !slides || record.counts[i] == 0) continue;
-        sliding.push_back({position, record.force[i]});
-      }
-    }
-  }
-  const std::size_t every = 1 + sliding.size() / kMostSamples;
-  const auto count = static_cast<Eigen::Index>((sliding.size() + every - 1) / every);
-  Eigen::MatrixXd forces(count >= kFewest ? count : 0, 2);
-  for (Eigen::Index i = 0; i < forces.rows(); ++i) {
-    const auto& [position, force] = sliding[static_cast<std::size_t>(i) * every];
-    forces.row(i) << position, force;
-  }
-  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(forces.rows(), 4);
-  for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(forces.col(0));
-  if (forces.rows() > 0) forces.col(1) = LeftOver(powers, forces.col(1));
-  return forces;
-}
-
-/// Returns the period, in units of the displacement, with which the forces of both directions vary
-/// most over the position: that of the largest peak of their spectra together, one phase for each
-/// direction and all strokes, of periods that fit twice into a stroke or oftener.
+/// Returns the period, in units of the displacement, with which the forces vary most over the
+/// position: that of the largest peak of their spectra, one for each direction of all strokes, of
+/// periods that fit twice into a stroke or oftener. Of each stroke its second half counts, of the
+/// forces what a cubic over the position leaves.
 double StartingPeriod(const ScaledRecords& data) {
   constexpr Eigen::Index kFrequencies = 391;  // a fifth of what a stroke resolves apart
+  constexpr std::size_t kMostSamples = 500;
+  constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
   const Eigen::ArrayXd frequencies = Eigen::ArrayXd::LinSpaced(kFrequencies, 1.0, 40.0);
   Eigen::ArrayXd power = Eigen::ArrayXd::Zero(kFrequencies);
   for (const double direction : {1.0, -1.0}) {
-    const Eigen::MatrixXd forces = SlidingForces(data, direction);
-    for (Eigen::Index k = 0; k < kFrequencies && forces.rows() > 0; ++k) {
-      const Eigen::ArrayXd phase = 2 * std::numbers::pi * frequencies[k] * forces.col(0).array();
-      const double cosine = forces.col(1).dot(phase.cos().matrix());
-      const double sine = forces.col(1).dot(phase.sin().matrix());
-      power[k] += (cosine * cosine + sine * sine) / static_cast<double>(forces.rows());
+    std::vector<double> sliding;  // positions and forces
+    for (const ScaledRecord& record : data.records) {
+      const std::vector<double>& x = record.displacement;
+      for (const Stroke& stroke : StrokesOf(x, record.reversals)) {
+        const double middle = (x[stroke.begin] + x[stroke.end]) / 2;
+        if (stroke.direction != direction) continue;
+        for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
+          if (record.counts[i] == 0 || direction * (x[i] - middle) < 0) continue;
+          sliding.insert(sliding.end(), {x[i], record.force[i]});
+        }
+      }
+    }
+    const std::size_t every = 1 + sliding.size() / 2 / kMostSamples;
+    const std::size_t count = (sliding.size() / 2 + every - 1) / every;
+    if (count < kFewest) continue;
+    const Eigen::Map<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>> some(
+        sliding.data(), 2, static_cast<Eigen::Index>(count),
+        Eigen::OuterStride<>(static_cast<Eigen::Index>(2 * every)));
+    const Eigen::ArrayXd position = some.row(0);
+    Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(position.size(), 4);
+    for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).array() * position;
+    const Eigen::ArrayXd force = LeftOver(powers, some.row(1).transpose()).array();
+    for (Eigen::Index k = 0; k < kFrequencies; ++k) {
+      const Eigen::ArrayXd phase = 2 * std::numbers::pi * frequencies[k] * position;
+      const double cosine = (force * phase.cos()).sum();
+      const double sine = (force * phase.sin()).sum();
+      power[k] += (cosine * cosine + sine * sine) / static_cast<double>(count);
     }
   }
   Eigen::Index best = 0;
@@ -78,33 +69,27 @@ void RequireNearUnit(const Parameter& parameter, std::string_view quantity, doub
   constexpr double kFarthest = 1e100;
   const double units = std::abs(value / parameter.scale);
   if (units <= kFarthest && (units >= 1 / kFarthest || !is_positive)) return;
-  ThrowInvalid(
-      quantity, value,
-      fmt::format("must be within a factor of 1e100 of the data's {:.3g}{}",
-                  std::abs(parameter.scale),
-                  parameter.term->unit == "-" ? "" : fmt::format(" {}", parameter.term->unit)));
+  ThrowInvalid(quantity, value,
+               fmt::format("must be within a factor of 1e100 of the data's {:.3g}",
+                           std::abs(parameter.scale)));
 }
 
-/// A value from the user must be one that the model takes.
-void RequireInDomain(const Parameter& parameter, std::string_view name, double value) {
-  const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
-  if (parameter.term->positive || parameter.term->lowest > 0) {
+/// Returns θ of a value from the user, which must be one that the model takes.
+double ThetaOf(const Parameter& parameter, std::string_view name, double value) {
+  const Term& term = *parameter.term;
+  const std::string quantity = fmt::format("{} [{}]", name, term.unit);
+  if (term.positive || term.lowest > 0) {
     RequirePositive(quantity, value);
-  } else if (parameter.term->id == TermId::kAlpha ||
-             parameter.term->motion == ContactMotion::kBehindGap) {
+  } else if (term.lowest == 0) {
     RequireNonNegative(quantity, value);
-    const bool is_gap = parameter.term->motion == ContactMotion::kBehindGap;
-    if (is_gap && !(value < 2 * parameter.scale)) {
-      ThrowInvalid(quantity, value,
-                   fmt::format("must be below the range of the displacement, {:.6g} m",
-                               2 * parameter.scale));
-    }
-  } else if (parameter.term->id == TermId::kAsymmetry) {
-    if (!(std::abs(value) < 1)) ThrowInvalid(quantity, value, "must be in (-1, 1)");
   } else {
     RequireFinite(quantity, value);
   }
-  RequireNearUnit(parameter, quantity, value, parameter.term->positive);
+  if (term.id == TermId::kAsymmetry && !(std::abs(value) < 1)) {
+    ThrowInvalid(quantity, value, "must be in (-1, 1)");
+  }
+  RequireNearUnit(parameter, quantity, value, term.positive);
+  return parameter.ToTheta(value);
 }
 
 void Hold(Parameter& parameter, double value) {
@@ -243,7 +228,6 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   const bool all_are_steady = !AnyIsVirgin(states);
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
-  if (is_masing && data.load_varies) KeepShapeBelowOne();
   ApplyOptions(options, all_are_steady, data.prior_noise);
   RequireTerms(data);
   if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
@@ -366,33 +350,23 @@ Parameter& Parameters::Find(std::string_view name) {
 }
 
 void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise) {
-  for (const std::string& name : options.terms) {
-    const Term* term = FindTerm(name, options.response());
-    if (term == nullptr ||
-        (term->presence != Presence::kOnDemand && term->presence != Presence::kReported) ||
-        term->of_column) {
-      throw InvalidArgument(fmt::format("'{}' is not a term that can be added", name));
-    }
-  }
   for (const auto& [name, interval] : options.bounds) {
     Parameter& parameter = Find(name);
-    const bool positive = parameter.term->positive;
-    RequireInDomain(parameter, name, interval.upper);
-    RequireInDomain(parameter, name, interval.lower == 0.0 ? interval.upper : interval.lower);
-    if (!(interval.lower < interval.upper)) {
-      throw InvalidArgument(fmt::format("bounds {}:{} of {} are invalid: the first must be smaller",
-                                        interval.lower, interval.upper, name));
+    const auto& [from, to] = interval;
+    const double open = parameter.term->positive ? parameter.lower : parameter.ToTheta(0.0);
+    const double upper = ThetaOf(parameter, name, to);
+    const double lower = from == 0.0 ? open : ThetaOf(parameter, name, from);
+    if (!(from < to)) {
+      throw InvalidArgument(
+          fmt::format("bounds {}:{} of {} are invalid: the first must be smaller", from, to, name));
     }
-    const double lower =
-        interval.lower == 0.0 && positive ? parameter.lower : parameter.ToTheta(interval.lower);
-    const double upper = parameter.ToTheta(interval.upper);
     parameter.lower = std::min(lower, upper);
     parameter.upper = std::max(lower, upper);
     parameter.bounded_by_user = true;
   }
   for (const auto& [name, value] : options.fixed) {
     Parameter& parameter = Find(name);
-    RequireInDomain(parameter, name, value);
+    parameter.theta = ThetaOf(parameter, name, value);
     if (name == "alpha" && options.model->shape_exponent &&
         *options.model->shape_exponent != value) {
       throw InvalidArgument(fmt::format(
@@ -405,30 +379,12 @@ void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, do
                       "it for a virgin contact",
                       name));
     }
-    Hold(parameter, value);
+    parameter.fixed = true;
     parameter.absent = false;
   }
-  ApplyPriors(options, prior_noise);
-  for (const auto& [name, value] : options.start) {
-    Parameter& parameter = Find(name);
-    RequireInDomain(parameter, name, value);
-    const double theta = parameter.ToTheta(value);
-    if (parameter.fixed) continue;
-    parameter.theta = theta;
-    parameter.started_by_user = true;
-    if (theta >= parameter.lower && theta <= parameter.upper) continue;
-    const double one_end = parameter.ToValue(parameter.lower);
-    const double other_end = parameter.ToValue(parameter.upper);
-    ThrowInvalid(fmt::format("start of {} [{}]", name, parameter.term->unit), value,
-                 fmt::format("must lie within its bounds {:.6g} … {:.6g}",
-                             std::min(one_end, other_end), std::max(one_end, other_end)));
-  }
-}
-
-void Parameters::ApplyPriors(const FitOptions& options, double noise) {
   for (const auto& [name, prior] : options.priors) {
     Parameter& parameter = Find(name);
-    RequireInDomain(parameter, name, prior.value);
+    const double theta = ThetaOf(parameter, name, prior.value);
     const std::string uncertainty =
         fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
     RequirePositive(uncertainty, prior.standard_uncertainty);
@@ -439,8 +395,20 @@ void Parameters::ApplyPriors(const FitOptions& options, double noise) {
     }
     if (parameter.fixed) continue;  // by the model, or in this initial state
     const double unit = parameter.term->positive ? prior.value : std::abs(parameter.scale);
-    parameter.theta = parameter.prior_theta = parameter.ToTheta(prior.value);
-    parameter.prior_root_weight = noise * unit / prior.standard_uncertainty;
+    parameter.theta = parameter.prior_theta = theta;
+    parameter.prior_root_weight = prior_noise * unit / prior.standard_uncertainty;
+  }
+  for (const auto& [name, value] : options.start) {
+    Parameter& parameter = Find(name);
+    const double theta = ThetaOf(parameter, name, value);
+    if (parameter.fixed) continue;
+    parameter.theta = theta;
+    parameter.started_by_user = true;
+    if (theta >= parameter.lower && theta <= parameter.upper) continue;
+    const auto [least, greatest] =
+        std::minmax({parameter.ToValue(parameter.lower), parameter.ToValue(parameter.upper)});
+    ThrowInvalid(fmt::format("start of {} [{}]", name, parameter.term->unit), value,
+                 fmt::format("must lie within its bounds {:.6g} … {:.6g}", least, greatest));
   }
 }
 

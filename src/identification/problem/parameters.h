@@ -143,7 +143,6 @@ class Parameters {
 
  private:
   void ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise);
-  void ApplyPriors(const FitOptions& options, double noise);
   void RequireTerms(const ScaledRecords& data) const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne();

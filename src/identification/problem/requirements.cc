@@ -21,13 +21,17 @@ void Validate(const FitOptions& options) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
   }
   loop::Validate(options.preparation);
-  const auto require = [&](std::string_view name) {
-    const Term* const term = FindTerm(TermNameOf(name), options.response());
-    if (term != nullptr) RequirePlace(*term, options.response());
-  };
-  for (const std::string& name : options.terms) require(name);
-  for (const auto& [name, value] : options.fixed) require(name);
-  if (!options.covariates.empty()) require("covariate");
+  for (const std::string& name : options.terms) {
+    const Term* const term = FindTerm(name, options.response());
+    if (term == nullptr || term->of_column || term->presence == Presence::kAlways ||
+        term->presence == Presence::kOffsets || term->presence == Presence::kLoadSeries) {
+      throw InvalidArgument(fmt::format("'{}' is not a term that can be added", name));
+    }
+    RequirePlace(*term, options.response());
+  }
+  if (!options.covariates.empty()) {
+    RequirePlace(TermOf(TermId::kCovariate, options.response()), options.response());
+  }
   if (options.response() == loop::Channel::kDisplacement && options.force_noise) {
     throw InvalidArgument("noise of the force, which is imposed and taken as exact: leave it out");
   }
