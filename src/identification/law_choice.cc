@@ -54,7 +54,7 @@ std::vector<SampleRange> UnknownPast(const ScaledRecords& data, const FitResult&
   std::vector<SampleRange> past;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::vector<double>& force = data.records[r].force;
-    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
+    const std::vector<std::size_t>& reversals = data.records[r].reversals;
     const auto [low, high] = std::ranges::minmax(force);
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
     if (reversals.empty() || !(std::abs(force.front() - (low + high) / 2) > unloaded)) continue;
@@ -70,18 +70,17 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
   FitOptions others = options;
   others.model = &other;
   others.start.clear();
+  if (fit.Find("alpha")->status == ParameterStatus::kFixed) {
+    others.fixed["alpha"] = fit.law.shape_exponent;
+  }
+  // A fit that determines only a combination of parameters gives no start for the other law.
+  if (fit.FindFinding("undetermined_combination") != nullptr) return others;
   for (const ParameterEstimate& estimate : fit.parameters) {
     if (estimate.status == ParameterStatus::kFree) others.start[estimate.name] = estimate.value;
   }
   others.start["sigma"] = law.tangential_stiffness;
   others.start["slip_force"] = law.slip_force;
-  others.start["alpha"] = law.shape_exponent;
-  if (fit.Find("alpha")->status == ParameterStatus::kFixed) {
-    others.start.erase("alpha");
-    others.fixed["alpha"] = fit.law.shape_exponent;
-  }
-  // A fit that determines only a combination of parameters gives no start for the other law.
-  if (fit.FindFinding("not_identifiable", "combination") != nullptr) others.start.clear();
+  if (!others.fixed.contains("alpha")) others.start["alpha"] = law.shape_exponent;
   return others;
 }
 
@@ -98,12 +97,6 @@ double IndependentSamples(const ScaledRecords& data, const FitResult& fit,
   return std::max(EffectiveSamples(data, residual) / widening, 1.0);
 }
 
-/// True if α, σ or Tc is at a bound, where the law turns into another one.
-bool LawIsAtBound(const FitResult& fit) {
-  return std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"},
-                             [&](const char* name) { return fit.Find(name)->is_at_bound(); });
-}
-
 /// True if all swings of the records are as wide as the widest, but for the steps of an encoder,
 /// those to their ends no wider. Then a steady contact of Masing's law and one of Dahl's own run
 /// along one curve, each with a σ and a Tc of its own (models/steady_loop.h).
@@ -111,7 +104,6 @@ bool HasOneAmplitude(std::span<const loop::RecordView> records, const ScaledReco
                      const Thresholds& thresholds) {
   double widest = 0.0;
   double narrowest = std::numeric_limits<double>::infinity();
-  double longest_end = 0.0;
   double step = 0.0;
   for (const loop::RecordView& record : records) {
     if (!data.is_forced()) {
@@ -124,16 +116,11 @@ bool HasOneAmplitude(std::span<const loop::RecordView> records, const ScaledReco
     for (std::size_t s = 0; s < strokes.size(); ++s) {
       const double swing =
           std::abs(record.excitation()[strokes[s].end] - record.excitation()[strokes[s].begin]);
-      if (s == 0 || s + 1 == strokes.size()) {
-        longest_end = std::max(longest_end, swing);
-      } else {
-        widest = std::max(widest, swing);
-        narrowest = std::min(narrowest, swing);
-      }
+      widest = std::max(widest, swing);
+      if (s > 0 && s + 1 < strokes.size()) narrowest = std::min(narrowest, swing);
     }
   }
-  const double wider = (1 + thresholds.one_amplitude) * narrowest + 2 * step;
-  return widest <= wider && longest_end <= wider;
+  return widest <= (1 + thresholds.one_amplitude) * narrowest + 2 * step;
 }
 
 }  // namespace
@@ -168,7 +155,11 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   } catch (const InvalidArgument&) {
     return choice;  // too few samples for it
   }
-  if (!other.converged || LawIsAtBound(other)) {
+  // At a bound of α, σ or Tc the law turns into another one.
+  const bool is_at_bound = std::ranges::any_of(
+      std::array{"sigma", "alpha", "slip_force"},
+      [&](const char* name) { return other.converged && other.Find(name)->is_at_bound(); });
+  if (!other.converged || is_at_bound) {
     choice.decided = !is_one_curve;
     if (choice.decided) choice.preferred = fit.model;
     return choice;

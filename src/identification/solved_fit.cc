@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,65 +19,60 @@ namespace {
 
 using models::InitialState;
 
-/// Returns a state for all records.
-std::vector<InitialState> ForAll(const Attempt& attempt, InitialState state) {
-  return std::vector(attempt.data.records.size(), state);
-}
+using States = std::vector<InitialState>;  // of each record
 
-/// Returns the initial states that the options name; nothing where both have to be tried.
-std::vector<InitialState> GivenStates(const Attempt& attempt) {
+/// Returns the initial states that the options name, else an unloaded and a cycled contact, where
+/// both are possible.
+std::vector<States> StatesToTry(const Attempt& attempt) {
   const std::vector<InitialState>& given = attempt.options.initial_states;
-  if (!given.empty()) return given.size() == 1 ? ForAll(attempt, given.front()) : given;
+  const std::size_t records = attempt.data.records.size();
+  if (given.size() > 1) return {given};
+  if (given.size() == 1) return {States(records, given.front())};
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(TermOf(OriginId(attempt.data.excitation)).name);
   });
-  if (unloaded_is_given || std::ranges::none_of(attempt.data.records, &ScaledRecord::Turns)) {
-    return ForAll(attempt, InitialState::kVirgin);
+  std::vector<States> states = {States(records, InitialState::kVirgin)};
+  if (!unloaded_is_given && std::ranges::any_of(attempt.data.records, &ScaledRecord::Turns)) {
+    states.emplace_back(records, InitialState::kSteady);
   }
-  return {};
+  return states;
 }
 
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  constexpr double kNone = std::numeric_limits<double>::infinity();
   ThinnedRecords thin(attempt.data);
-  const auto make = [&](const std::vector<InitialState>& states) {
-    Candidate candidate(attempt.data, options, states);
-    RequireEnoughSamples(candidate.problem, attempt.prepared);
-    return candidate;
-  };
   const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, thin, options, attempt.solver);
     Descend(candidate, options, attempt.solver);
     SearchBesideMinimum(candidate, options, attempt.solver);
   };
-  const std::vector<InitialState> given = GivenStates(attempt);
-  if (!given.empty()) {
-    Candidate candidate = make(given);
-    FindStartsOf(candidate, thin, options, kNone, attempt.solver);
-    descend(candidate);
-    return {.best = std::move(candidate)};
+  std::vector<Candidate> candidates;
+  for (const States& states : StatesToTry(attempt)) {
+    candidates.emplace_back(attempt.data, options, states);
+    RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }
-  Candidate virgin = make(ForAll(attempt, InitialState::kVirgin));
-  Candidate steady = make(ForAll(attempt, InitialState::kSteady));
-  const double virgin_cost = FindStartsOf(virgin, thin, options, kNone, attempt.solver);
-  const double virgin_look = virgin.starts.empty() ? kNone : virgin.starts.front().look;
-  const double steady_cost = FindStartsOf(steady, thin, options, virgin_look, attempt.solver);
+  std::vector<double> costs;  // at the best starts
+  double look = std::numeric_limits<double>::infinity();
+  for (Candidate& candidate : candidates) {
+    costs.push_back(FindStartsOf(candidate, thin, options, look, attempt.solver));
+    if (!candidate.starts.empty()) look = candidate.starts.front().look;
+  }
+  Candidate& virgin = candidates.front();
+  Candidate& steady = candidates.back();
   // A start from the options has no cost.
-  const bool is_looked_at = options.start.empty();
-  for (auto& [candidate, cost, other] : {std::tuple(&virgin, virgin_cost, steady_cost),
-                                         std::tuple(&steady, steady_cost, virgin_cost)}) {
-    if (!is_looked_at || !(other > options.thresholds.hopeless * cost)) continue;
-    descend(*candidate);
-    if (candidate->solution.converged) return {.best = std::move(*candidate)};
+  for (std::size_t k = 0; candidates.size() > 1 && options.start.empty() && k < 2; ++k) {
+    if (!(costs[1 - k] > options.thresholds.hopeless * costs[k])) continue;
+    descend(candidates[k]);
+    if (candidates[k].solution.converged) return {.best = std::move(candidates[k])};
   }
-  descend(virgin);
-  descend(steady);
+  std::ranges::for_each(candidates, descend);
   const Candidate& better =
       virgin.solution.sum_of_squares < steady.solution.sum_of_squares ? virgin : steady;
   // Neither may even have been started.
-  if (!std::isfinite(better.solution.sum_of_squares)) return {.best = std::move(virgin)};
+  if (candidates.size() == 1 || !std::isfinite(better.solution.sum_of_squares)) {
+    return {.best = std::move(virgin)};
+  }
   const Evidence evidence(
       attempt.data.counted,
       EffectiveSamples(better.problem, better.solution.theta, attempt.solver.response));
