@@ -30,23 +30,6 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
-/// Returns the rms of weighted residuals times the geometric mean of what weighs them.
-/// @param residuals  of every sample, without weights
-double WeightedRms(const ScaledRecords& data, std::span<const double> residuals) {
-  double squares = 0.0;
-  double log_weights = 0.0;
-  std::size_t k = 0;
-  for (const ScaledRecord& record : data.records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      if (record.counts[i] == 0) continue;
-      squares += std::pow(record.root_weight[i] * residuals[k], 2);
-      log_weights += std::log(record.root_weight[i]);
-    }
-  }
-  const auto count = static_cast<double>(data.counted);
-  return std::sqrt(squares / count) * std::exp(-log_weights / count);
-}
-
 /// Fills the fitted response and the residuals as the files have them, of every sample, and their
 /// rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
@@ -75,9 +58,16 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
     }
   }
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
-  const bool is_weighted = attempt.drawn != nullptr && attempt.options.loss == Loss::kNone;
-  result.likelihood_rms =
-      is_weighted ? data.response_unit() * WeightedRms(data, residuals) : result.rms;
+  result.likelihood_rms = result.rms;
+  if (attempt.drawn == nullptr || attempt.options.loss != Loss::kNone) return;
+  double log_weights = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    for (const double weight : record.root_weight) log_weights += weight > 0 ? std::log(weight) : 0;
+  }
+  const double squares_of_priors = problem.parameters.PriorCost(solved.solution().theta);
+  const auto count = static_cast<double>(data.counted);
+  result.likelihood_rms = data.response_unit() * std::exp(-log_weights / count) *
+                          std::sqrt((solved.solution().sum_of_squares - squares_of_priors) / count);
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {

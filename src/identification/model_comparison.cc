@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/extremes.h"
 #include "identification/continued_fit.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/parameters.h"
@@ -44,15 +43,8 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
 /// Scores the candidates by the criterion.
 /// @returns the fit with the least rms
 const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
-                                  std::span<const RecordView> records,
                                   std::vector<ModelScore>& scores) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  // Differences below the rounding of the data, whose unit is half their range, mean nothing.
-  double half_range = 0.0;
-  for (const RecordView& record : records) {
-    const auto [lowest, highest] = ExtremesOf(record.force);
-    half_range = std::max(half_range, highest / 2 - lowest / 2);
-  }
   const FitResult& best = *std::ranges::min_element(
       fits, {}, [](const FitResult& fit) { return IsFitted(fit) ? fit.likelihood_rms : kNone; });
   const auto samples = static_cast<double>(best.residuals.samples);
@@ -63,7 +55,8 @@ const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
     ModelScore& score = scores[i];
     score.rms = score.aicc = kNone;
     if (!IsFitted(fits[i])) continue;
-    const double rms = fits[i].likelihood_rms / half_range;
+    // Differences below the rounding of the data, which the criterion takes as one, mean nothing.
+    const double rms = fits[i].likelihood_rms / best.PeakForce();
     score.rms = fits[i].rms;
     score.aicc = evidence.Aicc(samples * rms * rms, score.free_parameters);
     if (score.converged) least = std::min(least, score.aicc);
@@ -149,7 +142,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     score.free_parameters = fit.CountFreeParameters();
   }
   if (std::ranges::none_of(fits, IsFitted)) return scores;
-  const FitResult& best = ScoreByCriterion(fits, records, scores);
+  const FitResult& best = ScoreByCriterion(fits, scores);
   const std::vector<SampleRange> cycles = CyclesOf(best);
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     if (!scores[i].converged) continue;
