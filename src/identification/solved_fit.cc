@@ -11,8 +11,8 @@
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
+#include "identification/problem/motion.h"
 #include "identification/problem/requirements.h"
-#include "identification/problem/turning_points.h"
 
 namespace mindahl::identification {
 namespace {

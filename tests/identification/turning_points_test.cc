@@ -1,5 +1,4 @@
-#include "identification/problem/turning_points.h"
-
+#include "identification/problem/motion.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 

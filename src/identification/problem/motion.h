@@ -10,9 +10,19 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 
-/// Contacts that are elsewhere than the displacement at the time of the force: T_file(t) = T(δ(t −
-/// lag)) of a force that is read late, and those behind a gap.
+/// The motion of a contact: where it turns, and where it is elsewhere than the displacement at the
+/// time of the force: T_file(t) = T(δ(t − lag)) of a force that is read late, and behind a gap.
 namespace mindahl::identification {
+
+/// Returns where the motion of a record turns: at its outermost samples, or between samples where
+/// the record is said to (ScaledRecord::turns_between) and five samples show a turn: of a smooth
+/// motion at the extremum of the polynomial through them, of a sharp one where its lines meet.
+std::vector<models::Turn> TurnsOf(const ScaledRecord& record);
+
+/// Lets records turn between samples, but for those of an imposed force or of readings with noise.
+/// @returns how far beyond a sample any turns [half range]
+double TurnBetweenSamples(ScaledRecords& data);
+void TurnAtSamples(ScaledRecords& data);
 
 /// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
 /// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.

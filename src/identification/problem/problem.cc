@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "identification/problem/turning_points.h"
 #include "mindahl/core/interruption.h"
 #include "mindahl/models/joint_friction.h"
 

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
