@@ -33,15 +33,15 @@ struct Case {
   models::ExcitationOptions excitation;
 };
 
-Case DrawCase(const ValidationOptions& options, std::size_t index, Draws& draws) {
+Case DrawCase(std::size_t index, Draws& draws) {
   Case drawn;
   drawn.friction_coefficient = draws.Uniform(0.05, 1.2);
   drawn.normal_load = draws.LogUniform(1e-6, 1e5);
   drawn.contact.contact_radius = draws.LogUniform(1e-8, 3e-2);
   drawn.contact.tangential_compliance = draws.LogUniform(1e-12, 1e-8);
   drawn.contact.slip_force = contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
-  drawn.lambda = options.lambdas[index % options.lambdas.size()];
-  const std::size_t round = index / options.lambdas.size();
+  drawn.lambda = kLambdas[index % kLambdas.size()];
+  const std::size_t round = index / kLambdas.size();
   drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
   drawn.excitation.waveform =
       round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle;
@@ -125,15 +125,6 @@ std::string Add(const Record& record, const models::BranchLaw& truth, const FitR
       errors[1], errors[2], standardized);
 }
 
-void RequireValidation(const ValidationOptions& options) {
-  if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
-  if (options.lambdas.empty() || options.noise_levels.empty()) {
-    throw InvalidArgument("amplitudes and noise levels must not be empty");
-  }
-  for (const double lambda : options.lambdas) RequirePositive("lambda [-]", lambda);
-  for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
-}
-
 }  // namespace
 
 double NoiseFreeTolerance(double lambda) {
@@ -143,10 +134,10 @@ double NoiseFreeTolerance(double lambda) {
 }
 
 ValidationReport ValidateMapping(const ValidationOptions& options) {
-  RequireValidation(options);
+  if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
   ValidationReport report;
-  for (const double noise : options.noise_levels) {
-    for (const double lambda : options.lambdas) {
+  for (const double noise : kNoiseLevels) {
+    for (const double lambda : kLambdas) {
       report.rows.push_back(
           {.lambda = lambda,
            .noise = noise,
@@ -155,17 +146,17 @@ ValidationReport ValidateMapping(const ValidationOptions& options) {
   }
   Draws draws(options.seed);
   for (std::size_t index = 0; index < options.cases; ++index) {
-    const Case drawn = DrawCase(options, index, draws);
+    const Case drawn = DrawCase(index, draws);
     const Record clean = MindlinRecord(drawn);
     const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
-    for (std::size_t level = 0; level < options.noise_levels.size(); ++level) {
+    for (std::size_t level = 0; level < kNoiseLevels.size(); ++level) {
       Record noisy = clean;
-      const double noise = options.noise_levels[level];
+      const double noise = kNoiseLevels[level];
       for (double& force : noisy.force) force += noise * std::abs(peak) * draws.Normal();
       ++report.fits;
-      const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
+      const std::size_t place = level * kLambdas.size() + index % kLambdas.size();
       const std::string missed = Add(noisy, truth, Fit({&noisy, 1}), report.rows[place]);
       if (missed.empty()) continue;
       ++report.failures;

@@ -6,11 +6,11 @@ namespace mindahl::identification::mapping_validation_test {
 namespace {
 
 TEST(MappingValidation, LoopsReturnTheContactAtEveryAmplitude) {
-  const ValidationOptions options{.cases = 28, .seed = 77, .noise_levels = {0.0, 0.01}};
+  const ValidationOptions options{.cases = 28, .seed = 77};
   const ValidationReport report = ValidateMapping(options);
-  EXPECT_EQ(report.fits, options.cases * options.noise_levels.size());
+  EXPECT_EQ(report.fits, options.cases * kNoiseLevels.size());
   EXPECT_EQ(report.failures, 0u) << ::testing::PrintToString(report.failed_cases);
-  ASSERT_EQ(report.rows.size(), options.lambdas.size() * options.noise_levels.size());
+  ASSERT_EQ(report.rows.size(), kLambdas.size() * kNoiseLevels.size());
   std::size_t cases = 0;
   std::size_t intervals = 0;
   std::size_t covering = 0;
@@ -18,7 +18,7 @@ TEST(MappingValidation, LoopsReturnTheContactAtEveryAmplitude) {
     cases += row.cases;
     if (row.noise > 0) {
       EXPECT_GT(row.worst_standardized, 0.0);
-      EXPECT_GT(row.errors[0], 1e-5) << "the loops are fitted, not copied";
+      EXPECT_GT(row.errors[0], 1e-3 * row.noise) << "the loops are fitted, not copied";
       intervals += row.intervals;
       covering += row.covering;
       continue;
@@ -37,24 +37,14 @@ TEST(MappingValidation, LoopsReturnTheContactAtEveryAmplitude) {
 
 TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {
   const auto worst = [](std::uint64_t seed) {
-    return ValidateMapping({.cases = 2, .seed = seed, .noise_levels = {0.01}}).rows[0].errors[0];
+    return ValidateMapping({.cases = 2, .seed = seed}).rows[0].errors[0];
   };
   EXPECT_EQ(worst(1), worst(1));
   EXPECT_NE(worst(1), worst(2));
 }
 
-TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
-  const auto refuses = [](auto spoil) {
-    ValidationOptions options;
-    options.cases = 1;
-    spoil(options);
-    EXPECT_THROW(ValidateMapping(options), InvalidArgument);
-  };
-  refuses([](ValidationOptions& o) { o.cases = 0; });
-  refuses([](ValidationOptions& o) { o.lambdas.clear(); });
-  refuses([](ValidationOptions& o) { o.lambdas = {-1}; });
-  refuses([](ValidationOptions& o) { o.noise_levels.clear(); });
-  refuses([](ValidationOptions& o) { o.noise_levels = {-0.1}; });
+TEST(MappingValidation, NoCaseIsRefused) {
+  EXPECT_THROW(ValidateMapping({.cases = 0}), InvalidArgument);
 }
 
 }  // namespace

@@ -13,11 +13,13 @@ namespace mindahl::identification {
 struct ValidationOptions {
   std::size_t cases = 500;  ///< contacts; each is fitted at every noise level
   std::uint64_t seed = 1;
-  /// Standard deviation of the force noise over the loop's peak force T*.
-  std::vector<double> noise_levels = {0.0, 1e-3, 1e-2, 5e-2};
-  /// Amplitudes X/δc, taken in turn.
-  std::vector<double> lambdas = {0.3, 0.5, 0.8, 1.0, 1.2, 2.0, 3.0};
 };
+
+/// Standard deviations of the force noise over the loop's peak force T*.
+inline constexpr std::array kNoiseLevels = {0.0, 1e-3, 1e-2, 5e-2};
+
+/// Amplitudes X/δc, taken in turn.
+inline constexpr std::array kLambdas = {0.3, 0.5, 0.8, 1.0, 1.2, 2.0, 3.0};
 
 /// Returns the tolerance on relative errors of σ and Tc, and errors of α, of a noise-free loop.
 double NoiseFreeTolerance(double lambda);
@@ -57,7 +59,7 @@ struct ValidationReport {
 /// log-uniform), μ in 0.05 … 1.2, one to four cycles, both starting directions, sine and triangle;
 /// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
 /// fits them with free α and compares.
-/// @throws InvalidArgument for options out of range
+/// @throws InvalidArgument where there is no case
 ValidationReport ValidateMapping(const ValidationOptions& options);
 
 }  // namespace mindahl::identification
