@@ -63,17 +63,6 @@ double StartingPeriod(const ScaledRecords& data) {
   return 1 / frequencies[best];
 }
 
-/// Squares and products of what is further from the unit of the data overflow or vanish.
-void RequireNearUnit(const Parameter& parameter, std::string_view quantity, double value,
-                     bool is_positive) {
-  constexpr double kFarthest = 1e100;
-  const double units = std::abs(value / parameter.scale);
-  if (units <= kFarthest && (units >= 1 / kFarthest || !is_positive)) return;
-  ThrowInvalid(quantity, value,
-               fmt::format("must be within a factor of 1e100 of the data's {:.3g}",
-                           std::abs(parameter.scale)));
-}
-
 /// Returns θ of a value from the user, which must be one that the model takes.
 double ThetaOf(const Parameter& parameter, std::string_view name, double value) {
   const Term& term = *parameter.term;
@@ -88,7 +77,6 @@ double ThetaOf(const Parameter& parameter, std::string_view name, double value) 
   if (term.id == TermId::kAsymmetry && !(std::abs(value) < 1)) {
     ThrowInvalid(quantity, value, "must be in (-1, 1)");
   }
-  RequireNearUnit(parameter, quantity, value, term.positive);
   return parameter.ToTheta(value);
 }
 
@@ -388,7 +376,6 @@ void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, do
     const std::string uncertainty =
         fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
     RequirePositive(uncertainty, prior.standard_uncertainty);
-    RequireNearUnit(parameter, uncertainty, prior.standard_uncertainty, true);
     if (parameter.absent || options.fixed.contains(name)) {
       throw InvalidArgument(
           fmt::format("a prior of {} has no effect: it is not fitted; leave it out", name));

@@ -65,12 +65,10 @@ void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
         "the normal load differs or varies, which a fit of the displacement does not model: fit "
         "the records of one load, or fit the force");
   }
-  constexpr double kLargest = 1e100;  // in half ranges of the response
   const std::optional<double> noise = options.response_noise();
-  if (!noise || *noise / data.response_unit() < kLargest) return;
+  if (!noise || *noise / data.response_unit() < 1e100) return;
   ThrowInvalid(is_forced ? "displacement noise [m]" : "force_noise [N]", *noise,
-               fmt::format("must be below 1e100 times half the range of the {}",
-                           is_forced ? "displacement" : "force"));
+               "must be below 1e100 times half the range of the records");
 }
 
 void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
