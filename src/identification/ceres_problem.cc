@@ -25,67 +25,51 @@ double CeresParameter::ThetaAt(double value) const {
 
 /// The problem of a fit, made again from its records.
 struct CeresProblem::State {
-  State(std::span<const loop::RecordView> records, FitOptions options, const FitResult& fit);
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-
   loop::PreparedRecords prepared;
   ScaledRecords data;
   std::optional<Problem> problem;
-  std::vector<double> theta;  // of the fit, within the bounds
   std::shared_ptr<UnprojectedResidual> residual;
   std::vector<CeresParameter> parameters;
   std::vector<std::size_t> blocks;  // among the parameters
 };
 
-CeresProblem::State::State(std::span<const loop::RecordView> records, FitOptions options,
-                           const FitResult& fit) {
+CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& given,
+                           const FitResult& fit, double residual_unit)
+    : state_(std::make_unique<State>()) {
+  RequirePositive("residual unit", residual_unit);
+  FitOptions options = given;
   options.preparation.force_sense = fit.force_sense;
+  auto& [prepared, data, problem, residual, values, blocks] = *state_;
   prepared = loop::Prepare(records, options.preparation);
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
   AddColumns(options, prepared, data);
   std::vector<models::InitialState> states;
-  states.reserve(data.records.size());
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     states.push_back(fit.records[r].initial_state);
     data.records[r].turns_between = fit.records[r].turns_between;
   }
   problem = Problem{&data, options.model, states, Parameters(data, options, states)};
-  for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
-    const Parameter& parameter = problem->parameters[p];
-    const ParameterEstimate* const estimate = fit.Find(problem->parameters.NameOf(p));
-    theta.push_back(
-        estimate == nullptr || parameter.fixed
-            ? parameter.theta
-            : std::clamp(parameter.ToTheta(estimate->value), parameter.lower, parameter.upper));
-  }
-}
-
-CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
-                           const FitResult& fit, double residual_unit) {
-  RequirePositive("residual unit", residual_unit);
-  state_ = std::make_unique<State>(records, options, fit);
-  State& state = *state_;
-  state.residual = std::make_shared<UnprojectedResidual>(
-      *state.problem, residual_unit / state.data.response_unit());
-  const Parameters& parameters = state.problem->parameters;
-  const std::span<const std::size_t> blocks = state.residual->blocks();
+  residual = std::make_shared<UnprojectedResidual>(*problem, residual_unit / data.response_unit());
+  const Parameters& parameters = problem->parameters;
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    if (std::ranges::find(blocks, p) != blocks.end()) {
-      state.blocks.push_back(state.parameters.size());
+    if (std::ranges::find(residual->blocks(), p) != residual->blocks().end()) {
+      blocks.push_back(values.size());
     }
-    state.parameters.push_back(
-        {.name = parameters.NameOf(p),
-         .unit = parameters.UnitOf(p, !state.data.records.front().velocity.empty()),
-         .theta = state.theta[p],
-         .lower = parameter.lower,
-         .upper = parameter.upper,
-         .fixed = parameter.fixed,
-         .positive = parameter.term->positive,
-         .reference = parameter.reference,
-         .scale = parameter.scale});
+    CeresParameter& value = values.emplace_back(
+        CeresParameter{.name = parameters.NameOf(p),
+                       .unit = parameters.UnitOf(p, !data.records.front().velocity.empty()),
+                       .theta = parameter.theta,
+                       .lower = parameter.lower,
+                       .upper = parameter.upper,
+                       .fixed = parameter.fixed,
+                       .positive = parameter.term->positive,
+                       .reference = parameter.reference,
+                       .scale = parameter.scale});
+    const ParameterEstimate* const estimate = fit.Find(value.name);
+    if (estimate == nullptr || parameter.fixed) continue;
+    value.theta = std::clamp(value.ThetaAt(estimate->value), value.lower, value.upper);
   }
 }
 
