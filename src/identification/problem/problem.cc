@@ -26,20 +26,6 @@ double LogScaleAt(const Problem& problem, std::span<const double> theta) {
   return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
-bool ShapesColumns(const Problem& problem, std::size_t parameter) {
-  return !problem.parameters[parameter].term->shapes.empty();
-}
-
-models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
-                               const ScaledRecord& record) {
-  const double exponent = problem.parameters.LoadExponentAt(theta);
-  const double log_travel = theta[kSlipForce] - theta[kRig] + record.log_load;
-  return {
-      .rate = std::exp(theta[kStiffness] - theta[kSlipForce] + (exponent - 1) * record.log_load),
-      .shape_exponent = theta[kShape],
-      .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
-}
-
 std::vector<std::span<double>> ResponseColumns::Wanted() const {
   std::vector<std::span<double>> wanted;
   std::ranges::copy_if(columns_, std::back_inserter(wanted),
@@ -56,6 +42,17 @@ ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) cons
 }
 
 namespace {
+
+/// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
+models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
+                               const ScaledRecord& record) {
+  const double exponent = problem.parameters.LoadExponentAt(theta);
+  const double log_travel = theta[kSlipForce] - theta[kRig] + record.log_load;
+  return {
+      .rate = std::exp(theta[kStiffness] - theta[kSlipForce] + (exponent - 1) * record.log_load),
+      .shape_exponent = theta[kShape],
+      .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
+}
 
 /// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
 /// Dahl's own reads both from its state z, that of a joint (models/joint_friction.h).

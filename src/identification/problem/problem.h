@@ -31,10 +31,6 @@ struct Problem {
 /// Returns the log of the factor of t: ln Tc, or ln(Tc/σ) of a displacement.
 double LogScaleAt(const Problem& problem, std::span<const double> theta);
 
-/// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
-models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
-                               const ScaledRecord& record);
-
 /// Derivatives of t, a column each of all samples, by term: an empty one is not wanted. That of σ
 /// is by ln(σ/Tc), that of a rig by ln(Tc/k), that of the origin by where the contact is unloaded.
 class ResponseColumns {
@@ -109,9 +105,6 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 /// @param theta  of all parameters: a column may depend on some (Term::shapes)
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
                double factor, std::span<double> to);
-
-/// True if columns of linear parameters depend on this one.
-bool ShapesColumns(const Problem& problem, std::size_t parameter);
 
 /// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, of every sample, no weight: its own column where it is
 /// linear, else those of the columns that it shapes.

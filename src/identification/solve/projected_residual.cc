@@ -173,7 +173,8 @@ void ProjectedResidual::MoveTo(std::span<const double> u) {
   bool columns_move = false;
   for (std::size_t j = 0; j < u.size(); ++j) {
     const std::size_t p = places_[j];
-    const bool has_column = problem_->parameters[p].term->is_linear || ShapesColumns(*problem_, p);
+    const Term& term = *problem_->parameters[p].term;
+    const bool has_column = term.is_linear || !term.shapes.empty();
     columns_move = columns_move || (has_column && theta_[p] != u[j]);
     theta_[p] = u[j];
   }
