@@ -1,5 +1,3 @@
-#include "identification/law_choice.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "identification/diagnosis/residuals.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
+#include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/disturbances.h"

@@ -1,10 +1,13 @@
 #include "identification/solved_fit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,12 +15,36 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/motion.h"
-#include "identification/problem/requirements.h"
+#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 namespace {
 
 using models::InitialState;
+
+/// Refuses fewer samples that count than free parameters, and says what was left out.
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
+  const std::size_t free = problem.parameters.free().size();
+  const std::size_t counted = problem.data->counted;
+  if (counted > free) return;
+  const std::size_t left_out = prepared.samples() - counted;
+  const std::string without = left_out == 0 ? ""
+                                            : fmt::format("; of {} that were read {} are left out",
+                                                          prepared.samples(), left_out);
+  throw InvalidArgument(
+      fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
+                  counted, free, without));
+}
+
+/// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
+void RequireToldAsymmetry(const Problem& problem) {
+  if (!problem.parameters[RowOf(TermId::kAsymmetry)].confounded) return;
+  throw InvalidArgument(
+      "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
+      "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "
+      "force_offset=0, or fit a record that includes the first loading of the unloaded contact, "
+      "with --initial-state virgin");
+}
 
 using States = std::vector<InitialState>;  // of each record
 

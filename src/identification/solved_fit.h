@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
+#include "mindahl/loop/record.h"
 #include "mindahl/models/branch_law.h"
 
 namespace mindahl::identification {
@@ -48,6 +50,17 @@ SolvedFit SolveFit(const Attempt& attempt);
 /// depth, adequacy, profiles and tests: each depth does what the one before does, and more.
 /// @param result  values, residuals and what the records show without a model, as assembled
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
+
+/// Masing's law against Dahl's own, whichever of them was fitted, by AICc on the effective samples
+/// of the one that leaves less. The other is fitted too where the record may distinguish them, from
+/// where its loop at the widest amplitude would be the same; of one amplitude it follows in closed
+/// form.
+/// @param data  the records, scaled
+/// @param fit   of them, from Depth::kErrors on
+/// @returns empty where the laws are one (α = 0), and where they are not compared
+std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
+                                     const FitOptions& options, const ScaledRecords& data,
+                                     const FitResult& fit);
 
 inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));

@@ -119,7 +119,6 @@ class Parameters {
   /// Returns the place of the term that moves the contact away from the displacement at the time of
   /// the force, of which there is one at most; size() where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
-  [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
   /// True if the records are under loads that differ.
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
