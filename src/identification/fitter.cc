@@ -79,7 +79,7 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   const bool is_forced = data.is_forced();
-  const double unit = is_forced ? data.length : data.sense * data.force;
+  const double unit = is_forced ? data.length : data.force * attempt.prepared.force_sense;
   double squares = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {

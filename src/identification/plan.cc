@@ -1,13 +1,13 @@
 #include "mindahl/identification/plan.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/refuse.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
@@ -115,8 +115,7 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
       std::vector<std::string> names;
       names.reserve(fit.parameters.size());
       for (const ParameterEstimate& known : fit.parameters) names.push_back(known.name);
-      throw InvalidArgument(fmt::format("parameter '{}' is not fitted: must be one of {}", name,
-                                        fmt::join(names, ", ")));
+      throw InvalidArgument("parameter " + UnknownAmong(name, names));
     }
     if (estimate->status == ParameterStatus::kFixed) continue;
     if (!estimate->standard_error) return std::numeric_limits<double>::infinity();

@@ -75,7 +75,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --bound load_exponent=0:1", "load_exponent has no effect"},
     {"fit @ --terms pressure",
      "no column is called 'pressure' (for the covariate): the columns are"},
-    {"fit @ --fix lag=1e6", "nothing is left of record 1"},
+    {"fit @ --fix lag=1e6", "0 samples are too few"},
     {"fit @ --fix asymmetry=1", "asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
     {"fit @ --terms asymmetry --model dahl --rig-stiffness fit",
      "asymmetry and rig_stiffness of dahl"},

@@ -1,7 +1,5 @@
 #include "identification/problem/motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,19 +69,6 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
     }
   }
   return p[0];
-}
-
-/// Returns the lags that the options allow [s, or samples].
-/// @param first  the first record, whose cycles the bounds are of
-Interval LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
-  const auto fixed = options.fixed.find("lag");
-  if (fixed != options.fixed.end()) return {fixed->second, fixed->second};
-  const auto bound = options.bounds.find("lag");
-  if (bound != options.bounds.end()) return bound->second;
-  const std::size_t reversals = first.reversals.size();
-  const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
-                         MeanCycleDuration(first.record.time, first.size(), reversals);
-  return {-longest, longest};
 }
 
 /// Moves a contact whose force is read late. It runs straight from sample to sample and turns where
@@ -221,9 +206,17 @@ double LongestLag(double samples_a_cycle) {
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
   if (!HasTerm(options, TermId::kLag) || records.excitation == loop::Channel::kForce) return;
   const loop::PreparedRecord& first = records.records.front();
-  const Interval lags = LagsOf(options, first);
-  for (std::size_t r = 0; r < records.records.size(); ++r) {
-    loop::PreparedRecord& record = records.records[r];
+  const std::size_t reversals = first.reversals.size();
+  const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
+                         MeanCycleDuration(first.record.time, first.size(), reversals);
+  Interval lags{-longest, longest};
+  if (const auto bound = options.bounds.find("lag"); bound != options.bounds.end()) {
+    lags = bound->second;
+  }
+  if (const auto fixed = options.fixed.find("lag"); fixed != options.fixed.end()) {
+    lags = {fixed->second, fixed->second};
+  }
+  for (loop::PreparedRecord& record : records.records) {
     const std::span<const double> time = record.record.time;
     if (time.empty() != first.record.time.empty() ||
         (!time.empty() && !(time.back() > time.front()))) {
@@ -237,11 +230,6 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
       if (at(i) - lags.upper < begin || at(i) - lags.lower > end) record.counts[i] = 0;
     }
     record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
-    if (record.left_out < record.size()) continue;
-    throw InvalidArgument(
-        fmt::format("nothing is left of record {}: with lags of {:.6g} to {:.6g} every sample that "
-                    "counts is moved beyond one of its ends: give smaller ones, --bound lag=LO:HI",
-                    r + 1, lags.lower, lags.upper));
   }
 }
 

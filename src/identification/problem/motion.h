@@ -30,8 +30,7 @@ double LongestLag(double samples_a_cycle);
 
 /// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
 /// not count; they still make history.
-/// @throws InvalidArgument where nothing is left of a record, where some records have a time and
-///   others not, or one never goes on
+/// @throws InvalidArgument where some records have a time and others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
 /// A path of a contact along its record.

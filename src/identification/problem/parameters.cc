@@ -259,14 +259,12 @@ void Parameters::HoldConfoundedAsymmetry() {
 
 /// Bounds α: under a load that varies slip must be complete at a finite displacement.
 void Parameters::KeepShapeBelowOne() {
+  constexpr double kHighest = 0.99;  // beyond it that exceeds a hundred times Tc/σ
   Parameter& shape = parameters_[kShape];
-  shape.upper = std::min(shape.upper, kHighestShapeUnderLoad);
+  shape.upper = std::min(shape.upper, kHighest);
   const double lowest = shape.fixed ? shape.theta : shape.lower;
   if (lowest < shape.upper) return;
-  ThrowInvalid("alpha [-]", lowest,
-               fmt::format("must be below {} where the normal load varies: the law then slips at a "
-                           "finite displacement; keep to one load with a load window",
-                           kHighestShapeUnderLoad));
+  ThrowInvalid("alpha [-]", lowest, "must be below 0.99 where the normal load varies");
 }
 
 void Parameters::Sort() {

@@ -80,10 +80,6 @@ inline constexpr std::size_t kSlipForce = RowOf(TermId::kSlipForce);
 inline constexpr std::size_t kRig = RowOf(TermId::kRigStiffness);
 inline constexpr std::size_t kLoadExponent = RowOf(TermId::kLoadExponent);
 
-/// Highest α where the normal load varies: beyond it the displacement at gross slip exceeds a
-/// hundred times Tc/σ, and no record has such a law.
-inline constexpr double kHighestShapeUnderLoad = 0.99;
-
 /// Returns the term of where a contact is unloaded: the offset of the channel that is imposed.
 constexpr TermId OriginId(loop::Channel excitation) {
   return excitation == loop::Channel::kForce ? TermId::kForceOffset : TermId::kDisplacementOffset;

@@ -211,7 +211,6 @@ double MeanCycleDuration(std::span<const double> time, std::size_t samples, std:
 
 ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options) {
   ScaledRecords scaled;
-  scaled.sense = records.force_sense;
   scaled.excitation = records.excitation;
   scaled.length = scaled.force = 0.0;
   scaled.counted = records.counted();
@@ -221,7 +220,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   }
   RequireScale("half range of the displacement [m]", scaled.length);
   RequireScale("half range of the force [N]", scaled.force);
-  const double sense = scaled.sense;
+  const double sense = records.force_sense;
   for (const loop::PreparedRecord& prepared : records.records) {
     const std::span<const double> displacement = prepared.displacement();
     const std::span<const double> force = prepared.force();

@@ -78,7 +78,6 @@ struct ScaledRecords {
   double length = 1.0;                      // [m]: largest half range of displacement
   double force = 1.0;                       // [N]: largest half range of force
   loop::Channel excitation = loop::Channel::kDisplacement;
-  int sense = 1;
   std::size_t counted = 0;        // samples that count
   std::vector<double> mean_load;  // [N] of each record; empty unless all are known
   double reference_load = 0.0;    // [N]: the mean of these; 0 where they are not known
