@@ -46,9 +46,7 @@ double FitResult::ResponseNoise() const {
 double FitResult::PeakForce() const {
   const RecordFit& widest = WidestRecord();
   // The force of a joint follows its load: under the mean one it is that of the law's steady loop.
-  if (widest.load_varies && model->memory == models::Memory::kNone) {
-    return models::SteadyPeakForce(*model, law, widest.facts.amplitude);
-  }
+  if (is_scaled_by_load()) return models::SteadyPeakForce(*model, law, widest.facts.amplitude);
   return widest.facts.peak_force / widest.load_ratio;
 }
 

@@ -28,20 +28,10 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   // Dahl's own law does not model a load that varies, and slip forces that differ it models by
   // directions that differ in stiffness too.
   if (data.load_varies || fit.Find("asymmetry") != nullptr) return false;
-  if (std::ranges::all_of(data.records,
-                          [](const ScaledRecord& record) { return record.reversals.empty(); })) {
-    return false;
-  }
+  if (std::ranges::none_of(data.records, &ScaledRecord::Turns)) return false;
   return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {
     return options.fixed.contains(name) || options.bounds.contains(name);
   });
-}
-
-/// True if a record starts inside the range of its strokes: then it may be virgin.
-bool StartsInside(const ScaledRecord& record, const Thresholds& thresholds) {
-  const auto [low, high] = std::ranges::minmax(record.excitation());
-  const double start = record.excitation().front();
-  return std::min(start - low, high - start) > thresholds.starts_inside * (high - low);
 }
 
 /// Returns what lies before the first turns of records that begin under a force, with a past that
@@ -142,8 +132,11 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const bool is_open = options.initial_states.empty();
   const bool is_one_curve = is_steady && HasOneAmplitude(records, data, options.thresholds);
   if (is_one_curve) {
+    // One that starts inside the range of its strokes.
     const auto starts_inside = [&](const ScaledRecord& record) {
-      return StartsInside(record, options.thresholds);
+      const auto [low, high] = std::ranges::minmax(record.excitation());
+      const double start = record.excitation().front();
+      return std::min(start - low, high - start) > options.thresholds.starts_inside * (high - low);
     };
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_states = {InitialState::kVirgin};

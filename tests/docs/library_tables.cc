@@ -35,7 +35,7 @@ Json TermsTable() {
     rows.push_back({{"name", term.name},
                     {"unit", term.unit},
                     {"meaning", term.meaning},
-                    {"is_of_record", term.scope == identification::Scope::kRecord},
+                    {"is_of_record", term.is_of_record},
                     {"is_linear", term.is_linear || term.id == identification::TermId::kSlipForce},
                     {"presence", presences.at(static_cast<std::size_t>(term.presence))},
                     {"option", OptionOf(term)},

@@ -39,8 +39,8 @@ TEST(Terms, EveryRowIsComplete) {
 TEST(Terms, OfTheContactComeBeforeThoseOfARecord) {
   bool seen_record = false;
   for (const Term& term : Terms()) {
-    EXPECT_FALSE(seen_record && term.scope == Scope::kContact) << term.name;
-    seen_record = seen_record || term.scope == Scope::kRecord;
+    EXPECT_FALSE(seen_record && !term.is_of_record) << term.name;
+    seen_record = seen_record || term.is_of_record;
   }
 }
 

@@ -13,7 +13,7 @@ namespace mindahl::identification {
 
 /// Least-squares fits of records with the same options, one after the other.
 ///
-/// A fit is of one contact: σ, α and Tc (and what else has Scope::kContact) are shared by its
+/// A fit is of one contact: σ, α and Tc (and what else is not Term::is_of_record) are shared by its
 /// records, offsets belong to each. It minimises
 ///   Σ w·(T_model(δ) − T)²,   T_model = Tc·t(δ; σ/Tc, α, δ₀, Tc/k_r) + Σ factor·column
 /// over non-dimensional parameters, so that the answer does not depend on the units. t is the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,10 +10,6 @@
 #include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
-
-/// Names the owner of a parameter: the contact (shared by all records), or each record, numbered
-/// from 1 if there are several (force_offset_2).
-enum class Scope { kContact, kRecord };
 
 /// Names the condition under which a parameter is fitted.
 enum class Presence {
@@ -95,7 +92,9 @@ struct Term {
   std::string_view name;
   std::string_view unit = "-";
   std::string_view meaning;  ///< one line, for tables of the documents
-  Scope scope = Scope::kContact;
+  /// One parameter for each record, numbered from 1 if there are several (force_offset_2); else one
+  /// of the contact, shared by all records.
+  bool is_of_record = false;
   Presence presence = Presence::kOnDemand;
   bool positive = false;
   double lowest = -10.0;  ///< default bounds, in units of the data
@@ -106,9 +105,8 @@ struct Term {
   /// The factor of a column (problem/problem.h); others enter through the law or the path.
   bool is_linear = false;
   bool needs_time = false;
-  /// The search may begin at `start`, of a parameter that is not linear.
-  bool has_start = false;
-  double start = 0.0;
+  /// θ at which a search may begin, of a parameter that is not linear.
+  std::optional<double> start = {};
   /// How the names of the linear parameters begin whose columns depend on this one.
   std::string_view shapes = {};
   /// Name of the term without which this one cannot be fitted; empty: none.

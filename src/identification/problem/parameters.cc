@@ -135,8 +135,8 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
     case Presence::kOnDemand:
       parameter.fixed = parameter.absent = !is_asked_for && !term.of_column;
       if (!is_asked_for) break;
-      parameter.theta =
-          term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all)) : term.start;
+      parameter.theta = term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all))
+                                                         : term.start.value_or(0.0);
       break;
     case Presence::kLoadSeries:
       parameter.fixed = parameter.absent = !all.is_load_series;
@@ -191,29 +191,25 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     : records_(data.records.size()), origin_(OriginId(data.excitation)) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
-  for (const Term& term : terms) {
-    if (term.scope != Scope::kContact) continue;
-    const std::size_t count = term.of_column ? options.covariates.size() : 1;
-    for (std::size_t c = 0; c < count; ++c) {
-      Parameter& parameter = parameters_.emplace_back(MakeParameter(term, 0, data, options));
-      if (!term.of_column) continue;
-      const CovariateColumn& covariate = data.covariates[c];
-      parameter.column = c;
-      parameter.column_name = covariate.name;
-      parameter.column_unit = covariate.unit;
-      parameter.scale /= covariate.scale;
-    }
-  }
-  if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   for (std::size_t r = 0; r < records_; ++r) {
-    for (const Term& term : terms) {
-      if (term.scope != Scope::kRecord) continue;
-      Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.id == origin_ && states[r] == models::InitialState::kSteady) {
-        Hold(parameter, parameter.reference);  // the centre of the loop
+    for (const Term& term : terms) {  // the contact's first
+      if (r > 0 && !term.is_of_record) continue;
+      const std::size_t count = term.of_column ? options.covariates.size() : 1;
+      for (std::size_t c = 0; c < count; ++c) {
+        Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
+        if (term.id == origin_ && states[r] == models::InitialState::kSteady) {
+          Hold(parameter, parameter.reference);  // the centre of the loop
+        }
+        if (!term.of_column) continue;
+        const CovariateColumn& covariate = data.covariates[c];
+        parameter.column = c;
+        parameter.column_name = covariate.name;
+        parameter.column_unit = covariate.unit;
+        parameter.scale /= covariate.scale;
       }
     }
   }
+  if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   const bool all_are_steady = !AnyIsVirgin(states);
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
   ApplyOptions(options, all_are_steady, data.prior_noise);
@@ -282,7 +278,7 @@ std::size_t Parameters::PositionOf(TermId id, std::size_t record) const {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
     if (parameter.term->id != id) continue;
-    if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
+    if (!parameter.term->is_of_record || parameter.record == record) return i;
   }
   return parameters_.size();
 }
@@ -301,7 +297,7 @@ std::size_t Parameters::PositionOfOrigin(std::size_t record) const {
 std::string Parameters::NameOf(std::size_t i) const {
   const Parameter& parameter = parameters_[i];
   if (parameter.term->of_column) return NameOfCovariate(parameter.column_name);
-  const bool is_numbered = parameter.term->scope == Scope::kRecord && records_ > 1;
+  const bool is_numbered = parameter.term->is_of_record && records_ > 1;
   return is_numbered ? fmt::format("{}_{}", parameter.term->name, parameter.record + 1)
                      : std::string(parameter.term->name);
 }

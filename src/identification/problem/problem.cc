@@ -315,8 +315,7 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const Sca
 }
 
 bool IsInRecord(const Parameter& parameter, std::size_t record) {
-  return !parameter.absent &&
-         (parameter.term->scope == Scope::kContact || parameter.record == record);
+  return !parameter.absent && (!parameter.term->is_of_record || parameter.record == record);
 }
 
 /// Adds a multiple of ColumnOf() of every sample.

@@ -227,7 +227,7 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
   StartingPoint start;
   for (const Parameter& parameter : parameters) {
     start.theta.push_back(parameter.theta);
-    const bool has_start = parameter.term->is_linear || parameter.term->has_start;
+    const bool has_start = parameter.term->is_linear || parameter.term->start;
     if (!parameter.fixed && !parameter.started_by_user && !has_start) return std::nullopt;
   }
   return start;
