@@ -173,7 +173,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"plan ~ --force-noise 0.4 --want alpha", "'alpha' is no precision"},
     {"plan ~ --force-noise 0.4 --want alpha=1x", "--want: 'alpha=1x' is no precision"},
     {"plan ~ --force-noise 0.4 --want alpha=0", "is no precision"},
-    {"plan ~ --force-noise 0.4 --want beta=1", "'beta' is not fitted"},
+    {"plan ~ --force-noise 0.4 --want beta=1", "'beta' is unknown"},
     {"plan ~ --record loop.csv", "--record excludes --sigma"},
     {"plan ~ --displacement 1", "--displacement requires --record"},
     {"plan ~ --force [kN]", "--force requires --record"},

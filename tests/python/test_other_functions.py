@@ -190,7 +190,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
      "waveform: triangel not in"),
     (lambda: mindahl.excitation(amplitude=-1.0), "amplitude"),
     (lambda: mindahl.plan(**LAW), r"force noise \[N\] = 0 is invalid"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "'alpa' is not fitted"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "'alpa' is unknown"),
     (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), "want: 'alpha=much' is no precision"),
     (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
     (lambda: mindahl.command("validate", cases=0), "cases: Value 0 not in range"),
