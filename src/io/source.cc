@@ -17,6 +17,10 @@
 namespace mindahl::io {
 namespace {
 
+constexpr std::string_view kStandardInput = "-";
+constexpr std::size_t kLongestLine = 16U << 20U;  // [bytes]
+constexpr std::size_t kPiece = 1U << 20U;         // [bytes] read at a time
+
 unsigned char ByteOf(char character) { return static_cast<unsigned char>(character); }
 
 /// Opens a decoder to UTF-8; null where iconv does not know the encoding.
@@ -97,6 +101,7 @@ LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
     : name_(NameOfInput(path)), encoding_(std::move(encoding)), file_(OpenedForReading(path)) {
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
+  piece_ = std::make_unique_for_overwrite<char[]>(kPiece);  // of a short file most is not touched
   Read();
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // the byte-order mark of UTF-8
 }

@@ -14,13 +14,7 @@ struct gzFile_s;  // NOLINT(readability-identifier-naming): zlib's
 
 namespace mindahl::io {
 
-/// The name of standard input where a file is asked for.
-inline constexpr std::string_view kStandardInput = "-";
-
-/// Bytes of the longest line that is read as a row of a record.
-inline constexpr std::size_t kLongestLine = 16U << 20U;
-
-/// Returns what messages call the file.
+/// Returns what messages call the file; "-" is standard input.
 std::string NameOfInput(const std::filesystem::path& path);
 
 /// Returns a text from a file as a message shows it: on one line, cut off after 60 bytes or so.
@@ -32,8 +26,6 @@ using Decoder = std::unique_ptr<void, void (*)(void*)>;
 /// A file, plain or compressed by gzip, as UTF-8 in pieces of whole lines that end in LF.
 class LinePieces {
  public:
-  static constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
-
   /// Reads the first piece.
   /// @param encoding  a name of iconv; "" for EncodingOf() the first bytes
   /// @throws InputError as Next(), where the file cannot be opened or is a workbook of a
@@ -43,7 +35,7 @@ class LinePieces {
   /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
   ///   until the next call
   /// @throws InputError where the file cannot be read, is not in its encoding, holds a zero byte,
-  ///   or has a line of more than kLongestLine
+  ///   or has a line of more than 16 MiB
   std::string_view Next();
 
   /// Returns what was assumed of the encoding, a sentence; "" where nothing was.
@@ -57,9 +49,8 @@ class LinePieces {
   std::string encoding_;
   std::shared_ptr<gzFile_s> file_;
   Decoder decoder_{nullptr, nullptr};
-  // gzread() fills it; of a short file the most of it is never touched.
-  std::unique_ptr<char[]> piece_ = std::make_unique_for_overwrite<char[]>(kPiece);
-  std::string undecoded_;  // bytes of a character that is not whole
+  std::unique_ptr<char[]> piece_;  // gzread() fills it
+  std::string undecoded_;          // bytes of a character that is not whole
   std::string text_;
   std::size_t given_ = 0;  // bytes of it that were returned
   std::uintmax_t bytes_ = 0;
