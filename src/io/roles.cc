@@ -148,24 +148,6 @@ Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role
   return quantity;
 }
 
-/// Returns the column with the best evidence for a role; none where none has any.
-/// @param turns  whether a displacement is to be an angle, or a force a torque
-std::optional<std::size_t> BestColumn(const CsvTable& table, Role role,
-                                      const std::vector<bool>& taken, std::optional<bool> turns) {
-  std::optional<std::size_t> best, rival;
-  int most = 0;
-  for (std::size_t column = 0; column < table.columns.size(); ++column) {
-    const int score = !taken[column] ? ScoreFor(table.columns[column], role, turns) : 0;
-    if (score == most) rival = column;
-    if (score <= most) continue;
-    best = column;
-    rival.reset();
-    most = score;
-  }
-  if (best && rival && role <= Role::kForce) table.ThrowAmbiguous(role, *best, *rival);
-  return best;
-}
-
 /// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
 /// @throws InputError for a unit that is none of the role's, and for columns in several units
 void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
@@ -286,7 +268,9 @@ class RoleAssigner {
   /// Takes the column with the best evidence, where none is given.
   void TakeBest(Role role, std::optional<bool> turns = {}) {
     if (!IsMissing(role)) return;
-    const std::optional<std::size_t> best = BestColumn(table_, role, taken_, turns);
+    const auto best = table_.Best(role, role > Role::kForce, [&](std::size_t column) {
+      return taken_[column] ? 0 : ScoreFor(table_.columns[column], role, turns);
+    });
     if (!best && role > Role::kForce && !Of(role).given_unit.empty()) ThrowNoColumn(role);
     if (!best) return;
     const Column& of = table_.columns[*best];
@@ -380,8 +364,9 @@ Quantity ReadImposed(const std::string& text, const CsvTable& table) {
   if (displacement.terms.empty()) {
     const Column& front = table.columns.front();
     const bool is_another = front.names(Role::kTime) || front.names(Role::kForce);
-    const std::vector<bool> none_taken(table.columns.size());
-    const auto best = is_another ? BestColumn(table, Role::kDisplacement, none_taken, {}) : 0U;
+    const auto best = table.Best(Role::kDisplacement, false, [&](std::size_t column) {
+      return is_another ? ScoreFor(table.columns[column], Role::kDisplacement, {}) : 0;
+    });
     displacement.terms = {{best.value_or(0)}};
   }
   const Column& first = table.columns[displacement.first_column()];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
@@ -308,21 +309,30 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
   return of.values;
 }
 
+std::optional<std::size_t> CsvTable::Best(Role role, bool may_tie,
+                                          const std::function<int(std::size_t)>& score) const {
+  std::optional<std::size_t> best, rival;
+  int most = 0;
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    const int found = score(column);
+    if (found == most) rival = column;
+    if (found <= most) continue;
+    best = column;
+    rival.reset();
+    most = found;
+  }
+  if (!best || !rival || may_tie) return best;
+  Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
+         Label(*best), Label(*rival), RulesOf(role).name, RulesOf(role).option, *best + 1);
+}
+
 std::optional<std::size_t> CsvTable::Named(std::string_view name, Role role) const {
   const std::string lower = LowerCase(name);
-  for (const bool exactly : {true, false}) {
-    std::optional<std::size_t> found;
-    for (std::size_t column = 0; column < columns.size() && !name.empty(); ++column) {
-      const std::string& full = columns[column].header;
-      const bool is_one =
-          exactly ? full == name
-                  : LowerCase(full) == lower || LowerCase(columns[column].name) == lower;
-      if (is_one && found) ThrowAmbiguous(role, *found, column);
-      if (is_one) found = column;
-    }
-    if (found) return found;
-  }
-  return std::nullopt;
+  return Best(role, false, [&](std::size_t column) {
+    const Column& of = columns[column];
+    const bool is_like = LowerCase(of.header) == lower || LowerCase(of.name) == lower;
+    return name.empty() ? 0 : of.header == name ? 2 : int{is_like};
+  });
 }
 
 std::string CsvTable::Label(std::size_t column) const {
@@ -340,11 +350,6 @@ std::string CsvTable::Listing() const {
 }
 
 std::string CsvTable::Header() const { return fmt::format("{}:{}", file, header_line); }
-
-void CsvTable::ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const {
-  Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
-         Label(one), Label(other), RulesOf(role).name, RulesOf(role).option, one + 1);
-}
 
 TableReader::TableReader(const std::filesystem::path& path, const std::string& encoding)
     : pieces_(path, encoding), first_(pieces_.Next()), table_{.file = NameOfInput(path)} {

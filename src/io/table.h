@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,7 +27,11 @@ struct CsvTable {
   /// Returns the numbers of a column, one a row, valid as long as the table.
   /// @throws InputError at the first cell that is missing or is not a number
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
-  /// Returns the column of a name, from 0; empty where there is none.
+  /// Returns the column, from 0, of the greatest score; empty where all have 0.
+  /// @throws InputError where several have it, unless the first of them is the one
+  [[nodiscard]] std::optional<std::size_t> Best(Role role, bool may_tie,
+                                                const std::function<int(std::size_t)>& score) const;
+  /// Returns the column of a name; empty where there is none.
   /// @throws InputError where it is that of several
   [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
   /// "'x [mm]' (column 2)", or "column 2" without a header.
@@ -35,8 +40,6 @@ struct CsvTable {
   [[nodiscard]] std::string Listing() const;
   /// "file:line" of the header.
   [[nodiscard]] std::string Header() const;
-  /// Refuses two columns for one role.
-  [[noreturn]] void ThrowAmbiguous(Role role, std::size_t one, std::size_t other) const;
 };
 
 /// How the rows of a text are read.
