@@ -1,7 +1,5 @@
 #include "io/cells.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -12,7 +10,6 @@
 #include <vector>
 
 #include "core/text.h"
-#include "io/source.h"
 
 namespace mindahl::io {
 namespace {
@@ -111,12 +108,6 @@ Cell ReadCell(std::string_view text, char decimal_mark) {
   }
   const bool is_date = PartsOf(text, '-').size() == 3 || PartsOf(text, '/').size() == 3;
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
-}
-
-std::string DescribeCellFault(std::string_view text, char decimal_mark) {
-  return fmt::format(
-      "'{}' is not a number: write it like -1{}5e-3, with no other mark, or remove the row",
-      ForMessage(text), decimal_mark);
 }
 
 }  // namespace mindahl::io

@@ -98,7 +98,4 @@ struct Cell {
 /// hexadecimal are no numbers; a magnitude below the smallest double is 0.
 Cell ReadCell(std::string_view text, char decimal_mark);
 
-/// Describes the fault of a cell that should hold a number, and the remedy.
-std::string DescribeCellFault(std::string_view text, char decimal_mark);
-
 }  // namespace mindahl::io

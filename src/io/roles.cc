@@ -233,9 +233,6 @@ class RoleAssigner {
  private:
   Quantity& Of(Role role) { return roles_.at(static_cast<std::size_t>(role)); }
   bool IsMissing(Role role) { return Of(role).terms.empty(); }
-  std::size_t IndexOf(const Column& column) {
-    return static_cast<std::size_t>(&column - table_.columns.data());
-  }
   const Column& ColumnOf(Role role) { return table_.columns[Of(role).first_column()]; }
   void Take(std::size_t column, Role role) {
     taken_[column] = true;
@@ -290,13 +287,14 @@ class RoleAssigner {
 
   /// Says so where a column that has as much evidence of a role is not taken, as it rests.
   void NoteThatItMoves(std::size_t taken, Role role) {
-    const auto resting = std::ranges::find_if(table_.columns, [&](const Column& of) {
-      return !of.goes_to_and_fro && of.is_numeric && !taken_[IndexOf(of)] &&
-             EvidenceFor(of, role) >= EvidenceFor(table_.columns[taken], role);
-    });
-    if (resting == table_.columns.end()) return;
-    Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name, table_.Label(taken),
-         table_.Label(IndexOf(*resting)));
+    const int evidence = EvidenceFor(table_.columns[taken], role);
+    for (std::size_t column = 0; column < taken_.size(); ++column) {
+      const Column& of = table_.columns[column];
+      if (of.goes_to_and_fro || !of.is_numeric || taken_[column]) continue;
+      if (EvidenceFor(of, role) < evidence) continue;
+      return Note("the {} is {}, as {} does not go to and fro", RulesOf(role).name,
+                  table_.Label(taken), table_.Label(column));
+    }
   }
 
   /// Gives what no name or unit decides to the columns of numbers that are left, if they are as

@@ -300,9 +300,7 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const Column& of = columns.at(column);
   if (of.values.empty()) {
-    Refuse("{}:{}:{}: '{}' (column {}) holds no numbers", file,
-           lines.empty() ? header_line : lines.front(), column + 1, ForMessage(of.header),
-           column + 1);
+    Refuse("{}:{}:{}: {} holds no numbers", file, lines.front(), column + 1, Label(column));
   }
   if (!of.broken.empty()) throw InputError(of.broken);
   if (!of.missing.empty()) throw InputError(of.missing);
@@ -437,6 +435,13 @@ void TableReader::Break(const std::string& fault, std::size_t column) {
   }
 }
 
+/// Describes the fault of a cell that should hold a number, and the remedy.
+std::string TableReader::NoNumber(std::size_t column, std::string_view text) const {
+  return At(column, fmt::format("'{}' is not a number: write it like -1{}5e-3, with no other mark, "
+                                "or remove the row",
+                                ForMessage(text), layout_.decimal_mark));
+}
+
 /// Returns the value of a cell that is not plainly a number.
 double TableReader::ReadText(std::size_t column, std::string_view text) {
   const Cell cell = ReadCell(text, layout_.decimal_mark);
@@ -445,7 +450,7 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
   if (cell.kind == Cell::Kind::kNumber) return cell.value;
   const bool is_missing = cell.kind == Cell::Kind::kMissing;
   std::string& said = is_missing ? of.missing : of.broken;
-  if (said.empty()) said = At(column, DescribeCellFault(text, layout_.decimal_mark));
+  if (said.empty()) said = NoNumber(column, text);
   return is_missing ? cell.value : kBroken;
 }
 
@@ -464,11 +469,7 @@ bool TableReader::IsText(std::string_view row) {
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;
   text_line_ = line_;
-  text_fault_ = At(layout_.text_column, DescribeCellFault(cell, layout_.decimal_mark));
-  if (!layout_.names_row.empty()) {
-    text_fault_ += fmt::format(
-        "; a further block of rows must have the columns of line {} above it", table_.header_line);
-  }
+  text_fault_ = NoNumber(layout_.text_column, cell);
   return true;
 }
 

@@ -90,6 +90,7 @@ class TableReader {
   bool IsText(std::string_view row);
   void EndText();
   void Break(const std::string& fault, std::size_t column);
+  [[nodiscard]] std::string NoNumber(std::size_t column, std::string_view text) const;
   [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
 
   LinePieces pieces_;

@@ -176,7 +176,7 @@ x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -
 x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, with no
    other mark, or remove the row
 x [m],F [N]¶1,2¶# the unit of neither¶a,b,c¶3,off¶ | - | - | :4:1: 'a' is not a number: write it
-   like -1.5e-3, with no other mark, or remove the row; a further block of rows must have the columns of line 1 above it
+   like -1.5e-3, with no other mark, or remove the row
 time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: write it like -1.5e-3,
    with no other mark, or remove the row; 1 of 2 rows are so: --broken-rows skip leaves them out
 )faults";
