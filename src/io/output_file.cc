@@ -33,7 +33,6 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   std::error_code error;
   const std::filesystem::file_status old = std::filesystem::status(path, error);
   const bool is_old = std::filesystem::exists(old);
-  if (std::filesystem::is_directory(old)) RequireWritten(path, EISDIR);
   // /dev/stdout may lead to a regular file, which the shell opened and must not be replaced.
   const std::string plain = path.lexically_normal().string();
   const bool is_device = plain.starts_with("/dev/") || plain.starts_with("/proc/");
