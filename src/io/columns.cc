@@ -1,7 +1,6 @@
 #include "io/columns.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,12 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
 
-#include "core/refuse.h"
 #include "core/text.h"
 #include "io/cells.h"
-#include "io/source.h"
 #include "io/words.h"
 
 namespace mindahl::io {

@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/locale/encoding_utf.hpp>
 #include <cmath>
 #include <optional>
 #include <set>
-#include <span>
 #include <string_view>
-#include <utility>
 
 #include "core/platform.h"
 #include "core/text.h"
