@@ -94,9 +94,10 @@ class RecordBuilder {
     };
     std::size_t kept = samples.lines.size();
     resize(kept + table.rows());
-    std::vector<double*> values;  // of the quantities
-    for (const Quantity& of : quantities_)
-      values.push_back((samples.*RulesOf(of.role).values).data());
+    std::vector<double*> values(quantities_.size());  // of the quantities
+    std::ranges::transform(quantities_, values.begin(), [&](const Quantity& of) {
+      return (samples.*RulesOf(of.role).values).data();
+    });
     LeftOutRows& left_out = file_.left_out;
     std::string refusal;
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {

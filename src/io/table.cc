@@ -278,7 +278,7 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
       sampled.push_back(std::move(row));
     } else if (sampled.size() == (has_comment ? 1 : 0) && !Trimmed(row.text).empty()) {
       row.text.remove_prefix(row.text.find('#') + 1);
-      sampled.assign(1, std::move(row));
+      sampled.assign(1, row);
     }
   }
   std::optional<Reading> best;
@@ -339,10 +339,8 @@ std::string CsvTable::Label(std::size_t column) const {
 }
 
 std::string CsvTable::Listing() const {
-  std::vector<std::string> listed;
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    listed.push_back(Label(column));
-  }
+  Strings listed(columns.size());
+  for (std::size_t column = 0; column < columns.size(); ++column) listed[column] = Label(column);
   return fmt::format("the columns are {}", fmt::join(listed, ", "));
 }
 
