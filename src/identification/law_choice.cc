@@ -63,7 +63,7 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
     others.fixed["alpha"] = fit.law.shape_exponent;
   }
   // A fit that determines only a combination of parameters gives no start for the other law.
-  if (fit.FindFinding("undetermined_combination") != nullptr) return others;
+  if (fit.FindFinding("not_identifiable", "combination") != nullptr) return others;
   for (const ParameterEstimate& estimate : fit.parameters) {
     if (estimate.status == ParameterStatus::kFree) others.start[estimate.name] = estimate.value;
   }
