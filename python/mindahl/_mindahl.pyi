@@ -50,7 +50,7 @@ class Fitted:
 
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
 
-BatchEntry = tuple[str, str, bool, list[str], str, str]
+BatchEntry = tuple[str, str, bool, list[str], str]
 """Name, fault, done, notes, JSON of the fit and digest."""
 
 def fit_one(record: Record, request: FitRequest, strict: int,

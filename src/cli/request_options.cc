@@ -293,7 +293,9 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
         option,
         [&target, option, form, parse](const std::string& text) {
           const auto [name, value] = Split(text, '=');
-          GiveOnce(option, name, Read(parse(value, UnitOf(name)), option, text, form), target);
+          auto parsed = parse(value, UnitOf(name));
+          if (name.empty()) parsed.reset();
+          GiveOnce(option, name, Read(std::move(parsed), option, text, form), target);
         },
         help, type);
   };

@@ -264,6 +264,9 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   // that its steps end no higher, though they are more.
   search.max_num_line_search_step_size_iterations = 0;
   search.logging_type = ceres::SILENT;
+  // Steps that lead nowhere shrink the trust region until it ends the search; that they are many
+  // Ceres would print as an error.
+  search.max_num_consecutive_invalid_steps = options.max_iterations;
   ceres::Solver::Summary summary;
   ceres::Solve(search, &ceres_problem, &summary);
   solution.converged = summary.termination_type == ceres::CONVERGENCE;
