@@ -45,10 +45,10 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
 namespace {
 
 /// Searches from θ, and keeps the solution where it is better.
-void SearchOnce(std::span<const double> theta, const FitOptions& options, Solver& solver,
+void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
                 Solution& best) {
   Solution solution;
-  solver.Solve(theta, SolverOptionsOf(options), solution);
+  solver.Solve(theta, options, solution);
   if (solution.sum_of_squares < best.sum_of_squares) best = std::move(solution);
 }
 
@@ -116,7 +116,7 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
   if (candidate.starts.empty()) return;
   solver.Bind(candidate.problem);
   for (const StartingPoint& start : candidate.starts) {
-    SearchOnce(start.theta, options, solver, best);
+    SearchOnce(start.theta, SolverOptionsOf(options), solver, best);
   }
 }
 
@@ -125,11 +125,20 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
   constexpr int kMostRounds = 4;
   constexpr double kLower = 1 - 1e-6;
+  constexpr int kSteps = 100;  // in which a way down shows
+  SolverOptions search = SolverOptionsOf(options);
+  SolverOptions look = search;
+  look.max_iterations = std::min(search.max_iterations, kSteps);
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {
     last = kLower * best.sum_of_squares;
+    Solution lower = best;
     for (const std::vector<double>& theta : Neighbours(candidate.problem, best.theta)) {
-      SearchOnce(theta, options, solver, best);
+      SearchOnce(theta, look, solver, lower);
+    }
+    if (lower.sum_of_squares < best.sum_of_squares) {
+      best = lower;
+      SearchOnce(lower.theta, search, solver, best);
     }
   }
 }
