@@ -33,7 +33,8 @@ std::optional<double> ReadClock(std::string text) {
   int year = 0, place = 0;
   unsigned month = 0, day = 0, hour = 0, minute = 0;
   double seconds = 0.0;
-  if (std::sscanf(text.c_str(), "%4d-%2u-%2u%*1[T ]%n", &year, &month, &day, &place) == 3) {
+  std::sscanf(text.c_str(), "%4d-%2u-%2u%*1[T ]%n", &year, &month, &day, &place);
+  if (place > 0 && year > 99) {
     const std::chrono::year_month_day of{std::chrono::year(year), std::chrono::month(month),
                                          std::chrono::day(day)};
     if (!of.ok()) return std::nullopt;

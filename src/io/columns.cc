@@ -40,7 +40,6 @@ constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
 /// The unit of what is a force only when it is multiplied by a load, or a percentage of something.
-constexpr std::string_view kRatioUnit = "ratio";
 
 /// Beginnings of a factor behind a name, in lower case, that make its unit none.
 constexpr std::array<std::string_view, 12> kFactors = {

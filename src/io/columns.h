@@ -77,6 +77,9 @@ bool LooksLikeUnit(std::string_view cell);
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 
+/// Stands for the unit of a coefficient, which has none.
+inline constexpr std::string_view kRatioUnit = "ratio";
+
 /// Describes how the values of columns behave. A friction without a unit beside a load is a ratio,
 /// and what is called a load beside a friction force, or a load of one sign beside a ratio, is the
 /// normal one.

@@ -172,8 +172,9 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
     const bool is_whole =
         std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
     if (values.empty() || !is_whole || (!changes && !may_be_constant)) return false;
+    const std::string& unit = table.columns[column].unit;
     file.record.covariates.push_back(
-        {.name = name, .unit = table.columns[column].unit, .values = std::move(values)});
+        {.name = name, .unit = unit == kRatioUnit ? "" : unit, .values = std::move(values)});
     is_read[column + 1] = true;
     return true;
   };
@@ -200,13 +201,15 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
 
 /// Appends the columns of another file of the same test, row by row.
 void AddColumnsOf(CsvTable& table, const CsvTable& other) {
-  const auto is_time = [](const Column& of) { return of.names(Role::kTime) && of.is_numeric; };
-  const auto time = std::ranges::find_if(table.columns, is_time);
-  const auto its_time = std::ranges::find_if(other.columns, is_time);
-  const bool have_times = time != table.columns.end() && its_time != other.columns.end();
-  if (table.rows() != other.rows() || (have_times && time->values != its_time->values)) {
+  if (table.rows() != other.rows()) {
     Refuse("--with: {} has {} rows and {} {}: give files of as many rows, at the same times",
            table.file, table.rows(), other.file, other.rows());
+  }
+  const auto time = BestTime(table);
+  const auto its_time = BestTime(other);
+  if (time && its_time && table.columns[*time].values != other.columns[*its_time].values) {
+    Refuse("--with: {} and {} have different times: give the values of one at those of the other",
+           table.file, other.file);
   }
   table.columns.insert(table.columns.end(), other.columns.begin(), other.columns.end());
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
@@ -254,10 +257,14 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
     }
     Column& added = table.columns.emplace_back(ReadName(name));
     added.values.assign(values.begin(), values.end());
-    const auto fault = std::ranges::find_if(values, [](double of) { return !std::isfinite(of); });
-    added.missing = fmt::format("{}:{}:{}: holds no number", table.file, fault - values.begin() + 1,
-                                table.columns.size());
-    added.broken = added.missing;
+    const auto find = [&](auto is_fault, std::string& said) {
+      const auto fault = std::ranges::find_if(values, is_fault);
+      if (fault == values.end()) return;
+      said = fmt::format("{}:{}:{}: holds no number", table.file, fault - values.begin() + 1,
+                         table.columns.size());
+    };
+    find([](double value) { return std::isnan(value); }, added.missing);
+    find([](double value) { return std::isinf(value); }, added.broken);
   }
   Observe(table.columns);
   return RecordIn(table, asked);
@@ -317,11 +324,13 @@ bool RecordStream::Next(Samples& samples) {
 
 void KeepTimeWindow(RecordFile& input, double first, double last) {
   const std::vector<double>& time = input.record.time;
+  if (time.empty())
+    Refuse("{}: a window of time needs a time: name its column with --time", input.name);
   const auto begin = std::ranges::lower_bound(time, first);
   const auto end = std::ranges::upper_bound(time, last);
   if (begin >= end) {
-    Refuse("{}: --time-window {}:{} holds no sample of the time, whose column --time names",
-           input.name, first, last);
+    Refuse("{}: no sample lies in the window of time {}:{}: the record runs from {} to {} s",
+           input.name, first, last, time.front(), time.back());
   }
   KeepSamples(input, static_cast<std::size_t>(begin - time.begin()),
               static_cast<std::size_t>(end - time.begin()));

@@ -360,7 +360,10 @@ Quantity ReadImposed(const std::string& text, const CsvTable& table) {
   Quantity displacement = ReadQuantity(text, table, Role::kDisplacement);
   if (displacement.terms.empty()) {
     const Column& front = table.columns.front();
-    const bool is_another = front.names(Role::kTime) || front.names(Role::kForce);
+    const auto is = [&](Role role) {
+      return front.names(role) || MayHaveRole(front.dimension, role);
+    };
+    const bool is_another = is(Role::kTime) || is(Role::kForce);
     const auto best = table.Best(Role::kDisplacement, false, [&](std::size_t column) {
       return is_another ? ScoreFor(table.columns[column], Role::kDisplacement, {}) : 0;
     });
@@ -370,6 +373,12 @@ Quantity ReadImposed(const std::string& text, const CsvTable& table) {
   std::vector<std::string> notes;  // SI is the documented default here
   FindUnitOf(displacement, table, first.IsAngular(displacement.given_unit) == true, notes);
   return displacement;
+}
+
+std::optional<std::size_t> BestTime(const CsvTable& table) {
+  return table.Best(Role::kTime, true, [&](std::size_t column) {
+    return ScoreFor(table.columns[column], Role::kTime, {});
+  });
 }
 
 std::vector<Quantity> AssignRoles(const CsvTable& table, const RecordColumns& asked,

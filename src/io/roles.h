@@ -41,8 +41,12 @@ struct Quantity {
 /// Returns the column, from 0, that the user calls so.
 std::size_t ReadCovariate(const std::string& text, const CsvTable& table);
 
-/// Returns the displacement that the user calls so, or that of ImposedDisplacement().
+/// Returns the displacement that the user calls so; without a name that of the first column or,
+/// where that is a time or a force, the one of the best evidence.
 Quantity ReadImposed(const std::string& text, const CsvTable& table);
+
+/// Returns the column of the best evidence of a time.
+std::optional<std::size_t> BestTime(const CsvTable& table);
 
 /// Returns the quantities of a record, from displacement and force to time and normal load where
 /// there are such: as they are given, else by the evidence of unit, name and numbers.

@@ -176,8 +176,9 @@ class Reading {
     layout_.data_offset = data->offset;
     layout_.data_line = data->line;
     for (const Row& row : std::span(rows_).first(data_)) {
-      if (!is_labview || mostly_numbers_[0] || row.cells[0] != "Delta_X") continue;
-      const double step = ReadCell(row.cells.at(1), layout_.decimal_mark).value;
+      const bool may_be = is_labview && !mostly_numbers_[0] && row.cells.size() > 1;
+      if (!may_be || row.cells[0] != "Delta_X") continue;
+      const double step = ReadCell(row.cells[1], layout_.decimal_mark).value;
       if (step > 0) table.interval = step;
     }
   }
@@ -226,7 +227,9 @@ class Reading {
         const Column column = ReadName(cell);
         return !column.unit.empty() || !column.word.empty();
       });
-      const bool may_be = row.is_comment ? names_.empty() && known >= 2 : is_adjacent || known >= 2;
+      const bool is_above_units = std::ranges::all_of(units_, LooksLikeUnit);
+      const bool may_be =
+          row.is_comment ? is_adjacent && is_above_units && known >= 2 : is_adjacent || known >= 2;
       if (are_known || !may_be) continue;
       are_known = known > 0;
       header = k;
@@ -398,10 +401,11 @@ void TableReader::ReadRow(std::string_view row) {
   table_.lines.push_back(line_);
   CellCursor cells(row, layout_.delimiter);
   std::size_t column = 0;
-  std::size_t excess = 0;  // the last column that the table has not
+  std::size_t excess = 0;  // the first column that the table has not
   for (; cells.has_next(); ++column) {
     if (column >= is_wanted.size() || !is_wanted[column]) {
-      if (!cells.Take().empty() && column >= is_wanted.size()) excess = column;
+      const bool has_content = !cells.Take().empty();
+      if (has_content && column >= is_wanted.size() && excess == 0) excess = column;
       continue;
     }
     double value = 0.0;
@@ -434,9 +438,13 @@ void TableReader::Break(const std::string& fault, std::size_t column) {
 
 /// Describes the fault of a cell that should hold a number, and the remedy.
 std::string TableReader::NoNumber(std::size_t column, std::string_view text) const {
-  return At(column, fmt::format("'{}' is not a number: write it like -1{}5e-3, with no other mark, "
-                                "or remove the row",
-                                ForMessage(text), layout_.decimal_mark));
+  const bool is_missing = ReadCell(text, layout_.decimal_mark).kind == Cell::Kind::kMissing;
+  const std::string remedy =
+      is_missing ? "fill in the cell"
+                 : fmt::format("write it like -1{}5e-3, without separators of thousands,",
+                               layout_.decimal_mark);
+  return At(column,
+            fmt::format("'{}' is not a number: {} or remove the row", ForMessage(text), remedy));
 }
 
 /// Returns the value of a cell that is not plainly a number.

@@ -91,7 +91,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --normal-load 0", "--normal-load [N] = 0"},
     {"fit @ --normal-load 25,", "--normal-load: ''"},
     // The selection of samples
-    {"fit @ --time-window 50:60", "holds no sample"},
+    {"fit @ --time-window 50:60", "no sample lies in the window"},
     {"fit @ --select load",
      "--select: 'load' is invalid: write cycles=LO:HI or samples=LO:HI, counted from 1, time="},
     {"fit @ --select cycle=1:2", "--select: 'cycle=1:2' is invalid"},

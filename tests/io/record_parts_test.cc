@@ -31,7 +31,7 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(file.record.normal_load, ElementsAre(20, 20));
   EXPECT_THAT(file.record.covariates[0].values, ElementsAre(-3, -4));
   const auto refusal = [&] { return MessageOf<InputError>([&] { KeepTimeWindow(file, 7, 8); }); };
-  EXPECT_THAT(refusal(), HasSubstr("7:8 holds no sample of the time"));
+  EXPECT_THAT(refusal(), HasSubstr("no sample lies in the window of time 7:8"));
   file.record.time.clear();
   EXPECT_THAT(refusal(), HasSubstr("whose column --time names"));
 }
