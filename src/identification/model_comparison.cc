@@ -55,7 +55,7 @@ const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
     ModelScore& score = scores[i];
     score.rms = score.aicc = kNone;
     if (!IsFitted(fits[i])) continue;
-    // Differences below the rounding of the data, which the criterion takes as one, mean nothing.
+    // Over the largest force: the criterion's floor is the rounding of forces of about one.
     const double rms = fits[i].likelihood_rms / best.PeakForce();
     score.rms = fits[i].rms;
     score.aicc = evidence.Aicc(samples * rms * rms, score.free_parameters);

@@ -438,13 +438,9 @@ void TableReader::Break(const std::string& fault, std::size_t column) {
 
 /// Describes the fault of a cell that should hold a number, and the remedy.
 std::string TableReader::NoNumber(std::size_t column, std::string_view text) const {
-  const bool is_missing = ReadCell(text, layout_.decimal_mark).kind == Cell::Kind::kMissing;
-  const std::string remedy =
-      is_missing ? "fill in the cell"
-                 : fmt::format("write it like -1{}5e-3, without separators of thousands,",
-                               layout_.decimal_mark);
-  return At(column,
-            fmt::format("'{}' is not a number: {} or remove the row", ForMessage(text), remedy));
+  return At(column, fmt::format("'{}' is not a number: write one like -1{}5e-3, without separators "
+                                "of thousands, or remove the row",
+                                ForMessage(text), layout_.decimal_mark));
 }
 
 /// Returns the value of a cell that is not plainly a number.

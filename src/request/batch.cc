@@ -67,7 +67,10 @@ Json RowOf(const BatchEntry& entry, const Json& fit) {
     row[name + "_verdict"] = At(parameter, "/identifiability");
   }
   std::vector<std::string> codes;
-  for (const Json& warning : At(fit, "/warnings")) codes.push_back(warning["code"]);
+  for (const Json& warning : At(fit, "/warnings")) {
+    const std::string code = warning["code"];
+    if (std::ranges::find(codes, code) == codes.end()) codes.push_back(code);
+  }
   row.update({{"rms", At(fit, "/residuals/rms")},
               {"r_squared", At(fit, "/residuals/r_squared")},
               {"slides", At(fit, "/measured/slides")},

@@ -26,12 +26,21 @@ void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   }
 }
 
+/// Returns the group that has a term; nullptr where there is none.
+const identification::TermGroup* GroupOf(const Term& term) {
+  const auto groups = identification::TermGroups();
+  const auto group = std::ranges::find_if(groups, [&](const identification::TermGroup& of) {
+    return std::ranges::find(of.terms, term.name) != of.terms.end();
+  });
+  return group == groups.end() ? nullptr : &*group;
+}
+
 /// Fits what a term that is held at a value has no meaning without, as a ripple's factors.
 void AddCompanionsOfFixed(FitOptions& fit) {
   for (const auto& [name, value] : fit.fixed) {
     const Term* term = identification::FindTerm(name);
     if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
-    AddGroup(*identification::FindTermGroup(term->group), fit);
+    if (const auto* group = GroupOf(*term)) AddGroup(*group, fit);
   }
 }
 
@@ -53,7 +62,7 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
 void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
   if (term == nullptr) return;  // the fit knows all names
-  const bool is_added = term->group.empty() || term->of_column ||
+  const bool is_added = GroupOf(*term) == nullptr || term->of_column ||
                         std::ranges::find(fit.terms, term->name) != fit.terms.end();
   const bool is_prescribed = name == "alpha" && fit.model->shape_exponent;
   if (is_added && !is_prescribed && !fit.fixed.contains(name)) return;

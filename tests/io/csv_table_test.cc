@@ -84,7 +84,9 @@ TEST(CsvTable, IsTheSameInEveryFormat) {
 
 // Ends of what is said of broken files.
 const std::map<std::string, std::string> kEnds = {
-    {"kWrite", " is not a number: write it like -1.5e-3, with no other mark, or remove the row"},
+    {"kWrite",
+     " is not a number: write one like -1.5e-3, without separators of thousands, or remove the "
+     "row"},
     {"kExpected",
      ": expected columns of them, under an optional header, between tabs, ';', blanks, or commas "
      "where these are no decimal marks"},
@@ -110,7 +112,7 @@ a,1,2¶1,b,2¶1,2,c¶ | :1:1: 'a' +kWrite
 x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' +kWrite
 x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kWrite
 x;F¶1,5;2¶3;4.5¶ | :2:1: '1,5' +kWrite
-x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write it like -1,5e-3, with no other mark, or
+x;F¶1,5;2¶2,5;3¶3;4.5¶ | :4:2: '4.5' is not a number: write one like -1,5e-3, without separators of thousands, or
    remove the row
 x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row ends before this column: complete it or remove it
 #¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row ends before this column: complete it or remove it

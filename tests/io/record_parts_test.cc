@@ -33,7 +33,7 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   const auto refusal = [&] { return MessageOf<InputError>([&] { KeepTimeWindow(file, 7, 8); }); };
   EXPECT_THAT(refusal(), HasSubstr("no sample lies in the window of time 7:8"));
   file.record.time.clear();
-  EXPECT_THAT(refusal(), HasSubstr("whose column --time names"));
+  EXPECT_THAT(refusal(), HasSubstr("needs a time: name its column with --time"));
 }
 
 }  // namespace

@@ -171,14 +171,14 @@ x [mm],F¶um,N¶1,2¶ | - | - | :1:1: the unit 'mm or um' of 'x [mm]' (column 1)
    displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3: has a number that is too large in SI units
-x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, with no
-   other mark, or remove the row
-x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, with no
-   other mark, or remove the row
-x [m],F [N]¶1,2¶# the unit of neither¶a,b,c¶3,off¶ | - | - | :4:1: 'a' is not a number: write it
-   like -1.5e-3, with no other mark, or remove the row
-time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: write it like -1.5e-3,
-   with no other mark, or remove the row; 1 of 2 rows are so: --broken-rows skip leaves them out
+x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write one like -1.5e-3, without
+   separators of thousands, or remove the row
+x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write one like -1.5e-3, without
+   separators of thousands, or remove the row
+x [m],F [N]¶1,2¶# the unit of neither¶a,b,c¶3,off¶ | - | - | :4:1: 'a' is not a number: write one
+   like -1.5e-3, without separators of thousands, or remove the row
+time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: write one like -1.5e-3,
+   without separators of thousands, or remove the row; 1 of 2 rows are so: --broken-rows skip leaves them out
 )faults";
 
 TEST(RecordReader, RefusesWhatItCannotReadInOneLine) {

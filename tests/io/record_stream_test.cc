@@ -66,8 +66,8 @@ TEST(RecordStream, SkipsBrokenRowsAndCountsThem) {
   EXPECT_FALSE(stream.Next(samples));
   EXPECT_EQ(stream.layout().left_out.count, 4u);
   EXPECT_EQ(stream.layout().left_out.fault,
-            fmt::format("{}:3:2: 'oops' is not a number: write it like -1.5e-3, with no other "
-                        "mark, or remove the row",
+            fmt::format("{}:3:2: 'oops' is not a number: write one like -1.5e-3, without "
+                        "separators of thousands, or remove the row",
                         path.string()));
 }
 
@@ -77,7 +77,7 @@ TEST(RecordStream, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotA
   for (const auto& [header, row, broken, fault] :
        {std::tuple("time,x,F\n", "12:00:00.5,{},1\n", "noon,1,2\n", ":1: 'noon' is not a number"),
         {"x;F\n", "{};0,500000000000\n", "1;1.5\n",
-         ":2: '1.5' is not a number: write it like -1,5e-3"},
+         ":2: '1.5' is not a number: write one like -1,5e-3"},
         {"x [um],F [kN]\n", "{},0.500000000000\n", "1,1e307\n",
          ": has a number that is too large"}}) {
     std::string text = header;

@@ -230,6 +230,12 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
       if (at(i) - lags.upper < begin || at(i) - lags.lower > end) record.counts[i] = 0;
     }
     record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+    if (record.left_out < record.size()) continue;
+    throw InvalidArgument(
+        fmt::format("lags of {:.6g} to {:.6g} move every sample of a record of {} beyond its ends: "
+                    "give smaller "
+                    "ones, --bound lag=LO:HI",
+                    lags.lower, lags.upper, record.size()));
   }
 }
 

@@ -63,6 +63,15 @@ double StartingPeriod(const ScaledRecords& data) {
   return 1 / frequencies[best];
 }
 
+/// Squares and products of what is further from the unit of the data overflow or vanish.
+void RequireNearUnit(const Parameter& parameter, std::string_view quantity, double value,
+                     bool is_positive) {
+  constexpr double kFarthest = 1e100;
+  const double units = std::abs(value / parameter.scale);
+  if (units <= kFarthest && (units >= 1 / kFarthest || !is_positive)) return;
+  ThrowInvalid(quantity, value, "must be within a factor of 1e100 of what the records show");
+}
+
 /// Returns θ of a value from the user, which must be one that the model takes.
 double ThetaOf(const Parameter& parameter, std::string_view name, double value) {
   const Term& term = *parameter.term;
@@ -77,6 +86,10 @@ double ThetaOf(const Parameter& parameter, std::string_view name, double value) 
   if (term.id == TermId::kAsymmetry && !(std::abs(value) < 1)) {
     ThrowInvalid(quantity, value, "must be in (-1, 1)");
   }
+  if (term.motion == ContactMotion::kBehindGap && !(value < 2 * parameter.scale)) {
+    ThrowInvalid(quantity, value, "must be below the range of the displacement");
+  }
+  RequireNearUnit(parameter, quantity, value, term.positive);
   return parameter.ToTheta(value);
 }
 
@@ -174,7 +187,8 @@ double Parameter::ToTheta(double value) const {
 
 BoundSide SideOf(double theta, double lower, double upper) {
   constexpr double kAtBound = 1e-9;
-  const double tolerance = kAtBound * std::max(1.0, upper - lower);
+  constexpr double kWide = 1e3;
+  const double tolerance = kAtBound * std::clamp(upper - lower, 1.0, kWide);
   if (theta - lower <= tolerance) return BoundSide::kLower;
   if (upper - theta <= tolerance) return BoundSide::kUpper;
   return BoundSide::kInside;
@@ -212,10 +226,11 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   const bool all_are_steady = !AnyIsVirgin(states);
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
-  ApplyOptions(options, all_are_steady, data.prior_noise);
+  ApplyLimits(options, all_are_steady);
+  if (is_masing && data.load_varies) KeepShapeBelowOne();
+  ApplyGuesses(options, data.prior_noise);
   RequireTerms(data);
   if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
-  if (is_masing && data.load_varies) KeepShapeBelowOne();
   Sort();
 }
 
@@ -260,7 +275,9 @@ void Parameters::KeepShapeBelowOne() {
   shape.upper = std::min(shape.upper, kHighest);
   const double lowest = shape.fixed ? shape.theta : shape.lower;
   if (lowest < shape.upper) return;
-  ThrowInvalid("alpha [-]", lowest, "must be below 0.99 where the normal load varies");
+  ThrowInvalid("alpha [-]", lowest,
+               "must be below 0.99 where the normal load varies, or keep to one load with --select "
+               "load=LO:HI");
 }
 
 void Parameters::Sort() {
@@ -331,7 +348,7 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise) {
+void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
   for (const auto& [name, interval] : options.bounds) {
     Parameter& parameter = Find(name);
     const auto& [from, to] = interval;
@@ -364,12 +381,16 @@ void Parameters::ApplyOptions(const FitOptions& options, bool all_are_steady, do
     parameter.fixed = true;
     parameter.absent = false;
   }
+}
+
+void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
   for (const auto& [name, prior] : options.priors) {
     Parameter& parameter = Find(name);
     const double theta = ThetaOf(parameter, name, prior.value);
     const std::string uncertainty =
         fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
     RequirePositive(uncertainty, prior.standard_uncertainty);
+    RequireNearUnit(parameter, uncertainty, prior.standard_uncertainty, true);
     if (parameter.absent || options.fixed.contains(name)) {
       throw InvalidArgument(
           fmt::format("a prior of {} has no effect: it is not fitted; leave it out", name));

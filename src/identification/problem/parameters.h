@@ -137,7 +137,8 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyOptions(const FitOptions& options, bool all_are_steady, double prior_noise);
+  void ApplyLimits(const FitOptions& options, bool all_are_steady);
+  void ApplyGuesses(const FitOptions& options, double prior_noise);
   void RequireTerms(const ScaledRecords& data) const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne();

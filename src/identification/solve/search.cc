@@ -67,7 +67,7 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
   for (const double share : {0.2, 0.5, 0.8, 0.99}) {
     for (const double shape : {0.02, 1.0}) {
-      if (!rig_is_open) continue;
+      if (!rig_is_open || (parameters[kShape].fixed && shape == 1.0)) continue;
       std::vector<double>& theta = neighbours.emplace_back(solution);
       theta[kStiffness] = -std::log((1 - share) * compliance);
       theta[kRig] = -std::log(share * compliance);
@@ -90,7 +90,9 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   }
   if (has_moved) neighbours.push_back(at_first);
   // Slip that begins just before the ends, of a loop that does not slip.
-  if (!parameters[kShape].fixed && solution[kSlipForce] > kUnreached) {
+  const bool may_be_sharp =
+      !parameters[kShape].fixed && !parameters[kSlipForce].fixed && !problem.data->is_forced();
+  if (may_be_sharp && solution[kSlipForce] > kUnreached) {
     std::vector<double>& sharp = neighbours.emplace_back(std::move(at_first));
     sharp[kShape] = kSharpest;
     sharp[kSlipForce] = 0.0;

@@ -17,7 +17,7 @@ struct SolverOptions {
   /// The search stops when a step can lower the cost by function_tolerance · cost at the most, …
   double function_tolerance = 1e-10;
   /// … or |Δu| < parameter_tolerance · (|u| + parameter_tolerance), …
-  double parameter_tolerance = 1e-15;
+  double parameter_tolerance = 2e-14;
   int max_iterations = 500;
   /// Leaves out the second opinion of ceres::Solve: the result is only a start.
   bool is_rough = false;
