@@ -290,6 +290,7 @@ class FitResult(Told):
     contact: _sections.contact
     mapping: _sections.mapping
     terms: _sections.terms
+    compared: tuple[_sections.compared, ...]  # of --compare, the best first
     next: Optional[_sections.next]
     warnings: tuple[_sections.warnings, ...]  # what a person should act on, with stable codes
     nulls: tuple[_sections.nulls, ...]
