@@ -1,5 +1,7 @@
 #include "identification/problem/motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
