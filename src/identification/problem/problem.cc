@@ -416,12 +416,9 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
                            std::span<double> t, std::span<double> columns) {
   const std::size_t samples = problem.size();
   // Each derivative of t is computed once, for however many parameters.
-  ResponseColumns gradient;
-  const std::span<double> scratch = response.Scratch((parameters.size() + 2) * samples);
-  std::size_t used = 0;
+  std::vector<TermId> wanted;
   const auto want = [&](TermId id, double factor) {
-    if (factor == 0 || !gradient[id].empty()) return;
-    gradient[id] = scratch.subspan(samples * used++, samples);
+    if (factor != 0 && std::ranges::find(wanted, id) == wanted.end()) wanted.push_back(id);
   };
   for (const std::size_t p : parameters) {
     for (const ScaledRecord& record : problem.data->records) {
@@ -431,6 +428,11 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
       want(TermId::kRigStiffness, rule.by_rig);
       want(parameter.term->id, rule.by_itself);
     }
+  }
+  ResponseColumns gradient;
+  const std::span<double> scratch = response.Scratch(wanted.size() * samples);
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    gradient[wanted[k]] = scratch.subspan(k * samples, samples);
   }
   response.Evaluate(theta, t, gradient);
   std::ranges::fill(columns, 0.0);
