@@ -140,7 +140,9 @@ Caution CautionOf(const FitResult& fit) {
   for (const Finding& finding : fit.findings) {
     if (finding.severity == Severity::kNote) continue;
     caution.warns = true;
-    if (std::ranges::find(kLeftOpen, finding.code) == kLeftOpen.end()) caution.alarms = true;
+    // An asymmetry is not asked of a clean one.
+    const bool is_left_open = std::ranges::find(kLeftOpen, finding.code) != kLeftOpen.end();
+    if (!is_left_open || finding.kind == "below_slip") caution.alarms = true;
   }
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kDoubtful) {
     caution.warns = caution.alarms = true;
