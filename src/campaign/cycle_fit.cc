@@ -152,9 +152,8 @@ Value CellValue(std::string_view cell) {
 std::string CycleTableHeader(bool is_torsional) {
   std::string header = "cycle,first_line,samples";
   for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
-    const bool has_other_unit = is_torsional && !column.unit.empty();
-    header += ',' + report::WithUnit(column.name, has_other_unit ? report::UnitOfTorque(column.unit)
-                                                                 : std::string(column.unit));
+    header += ',' + report::WithUnit(column.name, is_torsional ? report::UnitOfTorque(column.unit)
+                                                               : std::string(column.unit));
   }
   return header + ",accumulated_energy [J],flags\n";
 }

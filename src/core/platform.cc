@@ -60,7 +60,8 @@ std::optional<std::string> OutputOf(const std::string& command, std::string_view
   const std::unique_ptr<std::FILE, decltype(close)> in(std::tmpfile()), out(std::tmpfile());
   if (!in || !out || WriteFile(::fileno(in.get()), input) != 0) return std::nullopt;
   const std::string redirected = command + " </dev/fd/" + std::to_string(::fileno(in.get())) +
-                                 " >/dev/fd/" + std::to_string(::fileno(out.get()));
+                                 " >/dev/fd/" + std::to_string(::fileno(out.get())) +
+                                 " 2>/dev/null";
   if (std::system(redirected.c_str()) != 0) return std::nullopt;
   std::string text;
   std::array<char, 4096> block{};

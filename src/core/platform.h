@@ -34,9 +34,8 @@ int EndFileAt(int file, std::uintmax_t size);
 int WriteToDisk(int file);
 int CloseFile(int file);
 
-/// Runs a command of the shell on an input, both in files without names; what it says of errors
-/// stands among ours.
-/// @returns what it writes; empty where it cannot be run or fails
+/// Runs a command of the shell; what it reads and writes is in files without names.
+/// @returns what it writes; empty where it cannot be run or fails, whatever it says of that
 std::optional<std::string> OutputOf(const std::string& command, std::string_view input);
 
 }  // namespace mindahl

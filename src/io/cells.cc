@@ -46,8 +46,8 @@ std::optional<double> ReadClock(std::string text) {
   std::sscanf(text.c_str(), "%2u:%2u:%n", &hour, &minute, &place);
   const auto second = NumberIn<double>(std::string_view(text).substr(place));
   // 60 in a minute that leaps.
-  if (place == 0 || std::max(hour, minute) > 60 || !second || !(*second >= 0 && *second < 61))
-    return std::nullopt;
+  const bool is_time = place > 0 && std::max(hour, minute) <= 60 && second >= 0 && second < 61;
+  if (!is_time) return std::nullopt;
   return seconds + 3600.0 * hour + 60.0 * minute + *second;
 }
 

@@ -39,8 +39,6 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
-/// The unit of what is a force only when it is multiplied by a load, or a percentage of something.
-
 /// Beginnings of a factor behind a name, in lower case, that make its unit none.
 constexpr std::array<std::string_view, 12> kFactors = {
     "×", "*0", "*1", " x0.", " x 0.", " x10", " x 10", "1e-", " e-", "10^", "10⁻", "%"};

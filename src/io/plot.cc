@@ -242,7 +242,7 @@ std::string SvgOf(const Plot& plot) {
 }
 
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
-  const std::optional<std::string> png = OutputOf("rsvg-convert --format=png 2>/dev/null", svg);
+  const std::optional<std::string> png = OutputOf("rsvg-convert --format=png", svg);
   // A disk that is full may end the file, and not the program.
   if (png && png->ends_with("IEND\xAE\x42\x60\x82")) return *png;
   Refuse(

@@ -324,8 +324,9 @@ bool RecordStream::Next(Samples& samples) {
 
 void KeepTimeWindow(RecordFile& input, double first, double last) {
   const std::vector<double>& time = input.record.time;
-  if (time.empty())
+  if (time.empty()) {
     Refuse("{}: a window of time needs a time: name its column with --time", input.name);
+  }
   const auto begin = std::ranges::lower_bound(time, first);
   const auto end = std::ranges::upper_bound(time, last);
   if (begin >= end) {

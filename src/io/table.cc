@@ -460,8 +460,8 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
 bool TableReader::IsText(std::string_view row) {
   if (row == layout_.names_row) text_fault_.clear();
   if (row == layout_.names_row || row == layout_.units_row) return true;
-  if (IsLetter(row.front()) && row.front() == front_)
-    return false;  // rows with a label begin alike
+  // Rows with a label begin alike.
+  if (IsLetter(row.front()) && row.front() == front_) return false;
   CellCursor cells(row, layout_.delimiter);
   for (std::size_t k = 0; k < layout_.text_column && cells.has_next(); ++k) cells.Take();
   double number = 0.0;

@@ -51,8 +51,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds);
 
-/// An asymmetry of a contact that had been cycled before the records, and does not
-/// slip as a whole in every one of those whose force has a known zero.
+/// An asymmetry of a contact that had been cycled before the records, and does not slip as a whole
+/// in every one of those whose force has a known zero.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
 /// `force_at_limit`: a force that stands at its largest or least reading, to the last digit, in a

@@ -235,8 +235,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     if (record.left_out < record.size()) continue;
     throw InvalidArgument(
         fmt::format("lags of {:.6g} to {:.6g} move every sample of a record of {} beyond its ends: "
-                    "give smaller "
-                    "ones, --bound lag=LO:HI",
+                    "give smaller ones, --bound lag=LO:HI",
                     lags.lower, lags.upper, record.size()));
   }
 }

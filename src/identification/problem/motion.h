@@ -30,7 +30,8 @@ double LongestLag(double samples_a_cycle);
 
 /// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
 /// not count; they still make history.
-/// @throws InvalidArgument where some records have a time and others not, or one never goes on
+/// @throws InvalidArgument where nothing is left of a record, where some records have a time and
+///   others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
 /// A path of a contact along its record.
@@ -48,7 +49,7 @@ struct Motion {
   std::vector<ContactPath> paths;
 };
 
-/// Locates a contact, in memory that is used again.
+/// Locates a contact; reuses the memory of `motion`.
 /// @param turns   of the record's motion; of a lag those of the whole record
 /// @param amount  a lag in the record's scaled time, or the width of a gap
 void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, ContactMotion kind,

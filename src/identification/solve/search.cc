@@ -128,7 +128,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver
   constexpr int kMostRounds = 4;
   constexpr double kLower = 1 - 1e-6;
   constexpr int kSteps = 100;  // in which a way down shows
-  SolverOptions search = SolverOptionsOf(options);
+  const SolverOptions search = SolverOptionsOf(options);
   SolverOptions look = search;
   look.max_iterations = std::min(search.max_iterations, kSteps);
   double last = std::numeric_limits<double>::infinity();

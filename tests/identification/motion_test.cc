@@ -1,9 +1,10 @@
 #include "identification/problem/motion.h"
+
 #include "identification/stages.h"
 #include "support/prelude.h"
 
 // Turning points between samples: where the motion says that they are, and what they are worth.
-namespace mindahl::identification::turning_points_test {
+namespace mindahl::identification::motion_test {
 namespace {
 
 constexpr BranchLaw kLaw{4e7, 0.4, 40.0};
@@ -96,4 +97,4 @@ TEST(TurningPoints, BetweenSamplesLeaveIntervalsTheirCoverage) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification::turning_points_test
+}  // namespace mindahl::identification::motion_test
