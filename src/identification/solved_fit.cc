@@ -65,6 +65,17 @@ std::vector<States> StatesToTry(const Attempt& attempt) {
   return states;
 }
 
+/// True if the search of where a contact was unloaded stopped at a limit of its own: what is told
+/// is the cycles before the record.
+bool IsUnloadedAtLimit(const Candidate& candidate) {
+  const Parameters& parameters = candidate.problem.parameters;
+  for (std::size_t r = 0; r < candidate.problem.states.size(); ++r) {
+    const std::size_t origin = parameters.PositionOfOrigin(r);
+    if (IsSearchLimit(parameters[origin], candidate.solution.side[origin])) return true;
+  }
+  return false;
+}
+
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
@@ -107,7 +118,9 @@ SolvedFit FitBestState(const Attempt& attempt) {
     return evidence.Aicc(candidate.solution.sum_of_squares,
                          candidate.problem.parameters.free().size());
   };
-  const double gain = criterion(steady) - criterion(virgin);
+  const double gain = steady.solution.converged && IsUnloadedAtLimit(virgin)
+                          ? -std::numeric_limits<double>::infinity()
+                          : criterion(steady) - criterion(virgin);
   Candidate& best = gain > 0 ? virgin : steady;
   const Candidate& other = gain > 0 ? steady : virgin;
   std::optional<models::BranchLaw> law;
