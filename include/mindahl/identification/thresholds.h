@@ -57,9 +57,9 @@ struct Thresholds {
   /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
   /// by less than 1 % of Tc.
   double jenkins_shape = 0.01;
-  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
-  /// hundred is doubted.
-  double doubt = 0.005;
+  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in
+  /// seventy is doubted.
+  double doubt = 0.015;
   /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
   /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
   /// those of another minimum or a worse term. Noise by pure error or by neighbours is known to a

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -68,6 +69,15 @@ void Gram::SetNoise(Eigen::MatrixXd products) {
                 shares_.transpose() * of_law * shares_;
   absorbed_ = (inverse_of_law_ * of_law).trace();
   law_noise_ = inverse_of_law_ * of_law * inverse_of_law_;
+}
+
+double Gram::IndependentTests() const {
+  const Eigen::VectorXd scale =
+      (free_.diagonal().array() > 0).select(free_.diagonal().array().rsqrt(), 0.0);
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * free_ * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(correlation, Eigen::EigenvaluesOnly);
+  const Eigen::ArrayXd values = pairs.eigenvalues().array().max(0.0);
+  return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
 }
 
 GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {

@@ -137,19 +137,25 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   if (axes.values.size() == 0 || !(level.variance > 0)) return test;
   const RandomTerms terms = EstimateTerms(axes, level);
   const GramStep step = gram.StepBy(axes, terms.gains);
-  test.p_value = terms.p_value;
-  test.misfit_over_noise = std::sqrt(
-      (terms.gains * axes.values * axes.coefficients).square().sum() / samples / level.variance);
+  double explained = (terms.gains * axes.values * axes.coefficients).square().sum();
   test.step = ValuesOf(step.law);
   test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
 
   const Evidence evidence(data.counted, effective_samples);
+  double least = 1.0;
   for (OmittedTerm& term : departures.terms) {
     const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
     TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
+    least = std::min(least, term.p_value);
+    explained = std::max(explained, term.explains * gram.sum_of_squares());
     test.fits.push_back(std::move(term));
   }
+  test.misfit_over_noise = std::sqrt(explained / samples / level.variance);
+  // Two tests are made, of all terms together and of the one that noise alone makes least often.
+  // Noise that remembers makes one more often than what all columns leave of it says.
+  const double of_one = process.order > 0 ? 1.0 : 2 * gram.IndependentTests() * least;
+  test.p_value = std::min(terms.p_value, of_one);
   return test;
 }
 

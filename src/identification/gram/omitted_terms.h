@@ -15,7 +15,7 @@ namespace mindahl::identification {
 /// leave: what a model misses is smooth along the loop and would pass for autocorrelated noise.
 struct AdequacyTest {
   double misfit_over_noise = 0.0;   // rms of C·E(γ) beside J, over the noise
-  double p_value = 1.0;             // of τ = 0, by the ratio of likelihoods
+  double p_value = 1.0;             // that noise alone looks so
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
   std::vector<double> step;         // E(δ), one a free parameter
