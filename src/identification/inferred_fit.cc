@@ -134,7 +134,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
-  Append(result.findings, FindUnseenLoop(result, thresholds));
   if (is_judged) {
     if (options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
@@ -145,8 +144,8 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   Append(result.findings, FindContradictedPrior(fitted, thresholds));
   Append(result.findings, FindOpenSlipForce(result));
-  if (is_judged && IsInadequate(result, thresholds)) {
-    result = WithoutInadequate(std::move(result));
+  if (const std::optional<Finding> inadequate = FindInadequate(result, thresholds)) {
+    result = WithoutInadequate(std::move(result), *inadequate);
   }
   Append(result.findings, FindWideIntervals(result, thresholds));
   Judge(result.parameters, result.findings);

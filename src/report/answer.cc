@@ -51,8 +51,8 @@ std::string CauseText(const identification::Cause& cause) {
 
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
-  constexpr auto kSaid = std::to_array<std::string_view>(
-      {"other_law", "model_inadequate", "loop_not_seen", "no_closed_cycle"});
+  constexpr auto kSaid =
+      std::to_array<std::string_view>({"other_law", "model_inadequate", "no_closed_cycle"});
   return std::ranges::find(kSaid, code) != kSaid.end();
 }
 
@@ -314,7 +314,7 @@ std::string MisfitStatement(const Report& report) {
   const std::string_view unit = report.units.response;
   const std::string rms = Quantity(fit.residuals.rms, unit, 3);
   if (!IsJudged(report)) return rms + " rms; too few samples to judge the law";
-  const Finding* unseen = fit.FindFinding("loop_not_seen");
+  const Finding* unseen = fit.FindFinding("model_inadequate", "no_loop");
   if (unseen != nullptr) return Sentence(*unseen, fit, report.units);
   const identification::Adequacy& adequacy = fit.adequacy;
   if (adequacy.verdict == AdequacyVerdict::kAdequate) {

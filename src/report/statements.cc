@@ -135,7 +135,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     // about the law and what it misses
     {"other_law", "the other law fits as well"},
     {"other_law.better", "the other law fits better"},
-    {"loop_not_seen",
+    {"model_inadequate.no_loop",
      "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
      "columns?"},
     {"model_inadequate", "the law does not describe the record"},

@@ -16,6 +16,7 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
+#include "mindahl/identification/thresholds.h"
 #include "report/html.h"
 #include "report/json.h"
 #include "report/statements.h"
@@ -91,6 +92,7 @@ constexpr std::string_view kSeveralLaws =
 /// Returns the scatter of each quantity that two files or more have, next to their stated errors:
 /// root mean square, null of what states none.
 Json RepeatRows(const Json& table, bool has_several_laws) {
+  const double seen_loop = identification::Thresholds().seen_loop;
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
     const std::string name(quantity.name);
@@ -99,8 +101,8 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
     std::vector<double> values;
     std::vector<double> squares;  // of the errors
     for (const Json& row : table) {
-      const bool is_loop =
-          row["warnings"].get_ref<const std::string&>().find("loop_not_seen") == std::string::npos;
+      const Json& r_squared = row["r_squared"];
+      const bool is_loop = r_squared.is_null() || r_squared >= seen_loop;
       if (!row["done"].get<bool>() || !is_loop || row[name].is_null()) continue;
       const double value = row[name];
       if (!parameter.empty()) {

@@ -49,7 +49,7 @@ TEST(EdgeRecords, WhiteNoiseForAForceIsInadequateWithoutACause) {
     if (fit.FindFinding("not_converged") != nullptr) continue;
     EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kInadequate);
     EXPECT_TRUE(fit.adequacy.causes.empty());
-    EXPECT_NE(fit.FindFinding("loop_not_seen"), nullptr);
+    EXPECT_NE(fit.FindFinding("model_inadequate", "no_loop"), nullptr);
     // What would be to do if there were a loop.
     EXPECT_EQ(fit.FindFinding("bounded_below"), nullptr);
     for (const char* name : {"sigma", "alpha", "slip_force"}) {
@@ -162,7 +162,7 @@ void ExpectNoContradiction(const FitResult& fit) {
     EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   }
   if (fit.adequacy.verdict == AdequacyVerdict::kInadequate &&
-      fit.FindFinding("loop_not_seen") == nullptr) {
+      fit.FindFinding("model_inadequate", "no_loop") == nullptr) {
     EXPECT_GT(fit.adequacy.misfit_over_noise, 0.0);
     EXPECT_LT(fit.adequacy.p_value, 0.05);
   }

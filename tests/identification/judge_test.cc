@@ -25,7 +25,7 @@ struct Verdict {
 constexpr auto kVerdicts = std::to_array<Verdict>({
     {"not_identifiable", Identifiability::kNotIdentifiable},
     {"bounded_below", Identifiability::kBoundedBelow},
-    {"loop_not_seen", Identifiability::kNotIdentifiable},
+    {"model_inadequate", Identifiability::kNotIdentifiable},
     {"reversals_uncertain", Identifiability::kIdentifiable},
 });
 
@@ -88,7 +88,7 @@ TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
   ParameterEstimate open = Known("slip_force");
   open.upper95.reset();
   EXPECT_EQ(JudgedWith(open, {}), Identifiability::kBoundedBelow);
-  EXPECT_EQ(JudgedWith(open, {{.code = "loop_not_seen", .parameters = {"slip_force"}}}),
+  EXPECT_EQ(JudgedWith(open, {{.code = "model_inadequate", .parameters = {"slip_force"}}}),
             Identifiability::kNotIdentifiable);
   EXPECT_EQ(JudgedWith(open, {{.code = "reversals_uncertain", .parameters = {"slip_force"}}}),
             Identifiability::kBoundedBelow)

@@ -46,7 +46,7 @@ bool IsWide(const Thresholds& thresholds, std::size_t parameter, double lower, d
 bool LoopIsSeen(const Thresholds& thresholds, double r_squared) {
   FitResult result = Made();
   result.residuals.r_squared = r_squared;
-  return !FindUnseenLoop(result, thresholds);
+  return IsLoopSeen(result, thresholds);
 }
 
 // --- tests and profiles on stages

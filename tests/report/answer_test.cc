@@ -315,7 +315,8 @@ TEST(Answer, HasNoFractionAboveTheWhole) {
 
 TEST(Answer, OfNoLoopSaysSo) {
   ReportInput input = Inadequate();
-  input.fit.findings.push_back({.code = "loop_not_seen", .numbers = {{"r_squared", -0.52}}});
+  input.fit.findings = {
+      {.code = "model_inadequate", .numbers = {{"r_squared", -0.52}}, .kind = "no_loop"}};
   EXPECT_THAT(LineOf(input, "misfit"), StartsWith("no loop is seen: the fit explains 0 %"));
 }
 

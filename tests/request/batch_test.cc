@@ -48,7 +48,7 @@ struct Made {
   std::string verdict = "identifiable";
   double half_gap = 0.0;
   bool done = true;
-  std::vector<std::string> warnings = {};
+  double r_squared = 1.0;
 };
 
 BatchEntry EntryOf(const Made& made, const std::string& file) {
@@ -59,8 +59,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
       {"ci95", {made.slip_force - made.half_width, made.slip_force + made.half_width}},
       {"identifiability", made.verdict}};
   json["measured"]["half_gap"]["value"] = made.half_gap;
-  json["warnings"] = nlohmann::json::array();
-  for (const std::string& code : made.warnings) json["warnings"].push_back({{"code", code}});
+  json["residuals"]["r_squared"] = made.r_squared;
   BatchEntry entry;
   entry.done = made.done;
   entry.file = file;
@@ -89,7 +88,7 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
                                   {48, 1, 4 * kNormal95, "effective", 43},
                                   {1000, 1, kNormal95, "bounded_below", 48},
                                   {2000, 1, kNormal95, "identifiable", 99, /*done=*/false},
-                                  {9, 1, 1, "not_identifiable", 1, true, {"loop_not_seen"}}});
+                                  {9, 1, 1, "not_identifiable", 1, true, /*r_squared=*/0.05}});
   const auto& slip_force = repeats["slip_force"];
   EXPECT_EQ(slip_force["files"], 2);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);

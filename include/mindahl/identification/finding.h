@@ -56,7 +56,6 @@ inline constexpr auto kFindings = [] {
       // about the law: under its own law a parameter is as well known as before
       {.code = "other_law", .holds_without_model = true},
       // about the model discrepancy
-      {"loop_not_seen", kNotIdentifiable, kWarning, true},
       {"model_inadequate", kNotIdentifiable, kWarning, true},
       // about the search
       {.code = "not_converged"},

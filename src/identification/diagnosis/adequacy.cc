@@ -168,31 +168,42 @@ Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
   const double scale = half_gap ? *half_gap : result.MisfitScale();
   const double ratio = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
-  const bool is_seen = !FindUnseenLoop(result, thresholds);
+  const bool is_seen = IsLoopSeen(result, thresholds);
   adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
                  : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
                                                                     : Use::kNone;
   return adequacy;
 }
 
-bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
-  if (result.FindFinding("loop_not_seen") != nullptr) return true;
-  return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         result.adequacy.misfit > thresholds.failing_misfit * result.MisfitScale();
+bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds) {
+  // If a robust loss reduced the weight of readings, the variance is mostly theirs.
+  return result.outliers > 0 || result.residuals.r_squared >= thresholds.seen_loop;
 }
 
-FitResult WithoutInadequate(FitResult result) {
+std::optional<Finding> FindInadequate(const FitResult& result, const Thresholds& thresholds) {
+  if (!IsLoopSeen(result, thresholds)) {
+    return Finding{.code = "model_inadequate",
+                   .numbers = {{"r_squared", result.residuals.r_squared}},
+                   .kind = "no_loop"};
+  }
+  const bool fails = result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
+                     result.adequacy.misfit > thresholds.failing_misfit * result.MisfitScale();
+  return fails ? std::optional(Finding{.code = "model_inadequate"}) : std::nullopt;
+}
+
+FitResult WithoutInadequate(FitResult result, Finding finding) {
+  const bool is_loop = finding.kind != "no_loop";
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   // Omitted terms are taken to first order, here of a curve that is none of the record's.
-  if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
-  std::erase_if(result.findings, [](const Finding& finding) {
+  if (!is_loop) result.adequacy.causes.clear();
+  std::erase_if(result.findings, [](const Finding& other) {
     // Another account of a curve that is not there: also where it is but a note.
-    return finding.code == "shape_or_rig" ||
-           (!finding.parameters.empty() && !finding.code.row().holds_without_model);
+    return other.code == "shape_or_rig" ||
+           (!other.parameters.empty() && !other.code.row().holds_without_model);
   });
-  Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
-    if (estimate.status == ParameterStatus::kFixed || estimate.includes_discrepancy) continue;
+    const bool covers = is_loop && estimate.includes_discrepancy;
+    if (estimate.status == ParameterStatus::kFixed || covers) continue;
     WithdrawInterval(estimate);
     finding.parameters.push_back(estimate.name);
   }

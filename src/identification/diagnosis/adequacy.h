@@ -63,8 +63,13 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 /// is judged by T*.
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);
 
-/// True if the misfit is no noise and as large as failing_misfit, or no loop is seen in the force.
-bool IsInadequate(const FitResult& result, const Thresholds& thresholds);
+/// True unless the loop is so small against the rest of the force that its shape and height are
+/// those of the rest.
+bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds);
+
+/// `model_inadequate` where the misfit is no noise and as large as failing_misfit or, as "no_loop",
+/// where none is seen in the force.
+std::optional<Finding> FindInadequate(const FitResult& result, const Thresholds& thresholds);
 
 /// Sets the verdict on each parameter, from estimates and findings alone: the worst of
 ///  - not identifiable without an interval, bounded below where the interval is open above;
@@ -75,7 +80,8 @@ void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> find
 
 /// Under a model that does not describe the record nothing of it is to be believed: takes back
 /// errors, limits, tests, and what the findings would have one do to know its parameters better;
-/// adds the finding model_inadequate. Before Judge().
-FitResult WithoutInadequate(FitResult result);
+/// adds the finding with their names. Before Judge().
+/// @param finding  of FindInadequate()
+FitResult WithoutInadequate(FitResult result, Finding finding);
 
 }  // namespace mindahl::identification

@@ -337,15 +337,6 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                  .kind = "few_places"};
 }
 
-std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
-  const double r_squared = result.residuals.r_squared;
-  // If a robust loss reduced the weight of readings, the variance is mostly theirs.
-  if (result.outliers > 0 || r_squared >= thresholds.seen_loop) return std::nullopt;
-  return Finding{.code = "loop_not_seen",
-                 .parameters = {"sigma", "alpha", "slip_force"},
-                 .numbers = {{"r_squared", r_squared}}};
-}
-
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
   if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
   const bool is_better = choice->prefers_alternative();

@@ -64,10 +64,6 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records);
 /// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
 
-/// A loop that is so small against the rest of the force that its shape and height are
-/// those of the rest.
-std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds);
-
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a
 /// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
