@@ -83,7 +83,7 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
       result.correlation.push_back(estimates.Correlation(reported[k], other));
     }
   }
-  Append(result.findings, FindUndetermined(problem, estimates.local()));
+  Append(result.findings, FindUndetermined(estimates));
 }
 
 /// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
@@ -118,9 +118,8 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Linearization at =
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  const Estimates fitted(problem, solution, noise,
-                         WeightedForceErrors(attempt.drawn, problem, solution), options,
-                         std::move(at));
+  noise.drawn = WeightedForceErrors(attempt.drawn, problem, solution);
+  const Estimates fitted(problem, solution, noise, options, std::move(at));
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) {

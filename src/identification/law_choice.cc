@@ -7,7 +7,6 @@
 #include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/residuals.h"
-#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"

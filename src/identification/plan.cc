@@ -91,8 +91,9 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   for (const std::size_t p : problem.parameters.free()) {
     solution.side[p] = SideOf(problem.parameters[p], theta[p]);
   }
+  noise.drawn = WeightedForceErrors(drawn.get(), problem, solution);
   const Estimates estimates(
-      problem, solution, noise, WeightedForceErrors(drawn.get(), problem, solution), options,
+      problem, solution, noise, options,
       LinearizeAt(problem, theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;

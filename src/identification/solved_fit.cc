@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/motion.h"

@@ -8,7 +8,7 @@
 
 #include "core/probability.h"
 #include "identification/dense.h"
-#include "identification/inference/local.h"
+#include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/motion.h"
 #include "identification/problem/scaled_records.h"

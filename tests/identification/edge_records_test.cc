@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include "identification/inference/estimates.h"
-#include "identification/inference/local.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"

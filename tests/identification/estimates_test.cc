@@ -153,15 +153,16 @@ TEST(Estimates, OfADirectionWithoutEffectAreNone) {
   // A straight line knows the ratio of nothing: its plateau slope is σ.
   Stages stages(NoisyLoop(5), Virgin());
   const Solution solution = stages.Solve();
-  Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
-  jacobian.col(1) = 2 * jacobian.col(0);
-  const LocalUncertainty local =
-      AnalyseJacobian(stages.problem, jacobian, KnownNoise(1.0, stages.data.counted), {});
-  EXPECT_FALSE(local.determined[0] || local.determined[1]);
-  EXPECT_TRUE(local.determined[2] && local.determined[3]);
-  ASSERT_EQ(local.null.size(), 1U);
-  // 2·δθ₁ + δθ₀ = 0
-  EXPECT_NEAR(local.null[0][0] + 2 * local.null[0][1], 0.0, 1e-9 * std::abs(local.null[0][0]));
+  Linearization at{.jacobian = stages.DifferencesAt(solution.theta),
+                   .residual = stages.ResidualsAt(solution.theta)};
+  at.jacobian.col(1) = 2 * at.jacobian.col(0);
+  const Noise noise = KnownNoise(1.0, stages.data.counted);
+  const Estimates estimates(stages.problem, solution, noise, stages.options, std::move(at));
+  EXPECT_EQ(estimates.open_directions(), 1U);
+  const auto& free = stages.problem.parameters.free();
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(std::isinf(estimates.ErrorOfTheta(free[k])), k < 2) << k;
+  }
 }
 
 TEST(LeftOver, OfAMatrixOfZerosOrWithoutColumnsIsAll) {

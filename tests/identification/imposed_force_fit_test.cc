@@ -1,4 +1,3 @@
-#include "identification/inference/local.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "support/imposed_force.h"

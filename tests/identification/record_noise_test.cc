@@ -22,14 +22,14 @@ TEST(VariancesOfRecords, AreTheirMeanSquaresOverThatOfAll) {
   EXPECT_DOUBLE_EQ(variances[1], 1.8);
 }
 
-TEST(CorrelatedProduct, CountsEachRecordByItsVariance) {
+TEST(Noise, CountsEachRecordByItsVarianceInProducts) {
   Stages two(std::vector<loop::Record>{Loop(), Loop()}, Virgin());
   const auto rows = static_cast<Eigen::Index>(two.problem.size());
   Eigen::MatrixXd column = Eigen::MatrixXd::Constant(rows, 1, 2.0);
   column.topRows(rows / 2).setOnes();
   Noise noise;
   noise.of_records = {0.2, 1.8};
-  const double product = CorrelatedProduct(two.data, {}, noise, {}, column)(0, 0);
+  const double product = noise.Product(two.data.records, {}, column)(0, 0);
   EXPECT_DOUBLE_EQ(product, static_cast<double>(rows) / 2 * (0.2 * 1 + 1.8 * 4));
 }
 

@@ -130,11 +130,7 @@ inline WeightedFit FitWeighted(Stages& stages) {
 inline identification::Estimates EstimatesOf(Stages& stages,
                                              const identification::Solution& solution,
                                              const identification::Noise& noise) {
-  return {stages.problem,
-          solution,
-          noise,
-          {},
-          stages.options,
+  return {stages.problem, solution, noise, stages.options,
           identification::LinearizeAt(stages.problem, solution.theta, stages.solver.response,
                                       stages.problem.parameters.free())};
 }

@@ -100,15 +100,15 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
   return findings;
 }
 
-std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
-  if (local.null.empty()) return std::nullopt;
+std::optional<Finding> FindUndetermined(const Estimates& fitted) {
+  if (fitted.open_directions() == 0) return std::nullopt;
   std::vector<std::string> names;
-  const std::vector<std::size_t>& free = problem.parameters.free();
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    if (!local.determined[k]) names.push_back(problem.parameters.NameOf(free[k]));
+  const Parameters& parameters = fitted.problem().parameters;
+  for (const std::size_t p : parameters.free()) {
+    if (std::isinf(fitted.ErrorOfTheta(p))) names.push_back(parameters.NameOf(p));
   }
   // With as many directions as names, each parameter is undetermined by itself.
-  const bool are_alone = local.null.size() >= names.size();
+  const bool are_alone = fitted.open_directions() >= names.size();
   return Finding{.code = "not_identifiable",
                  .parameters = std::move(names),
                  .kind = are_alone ? "without_effect" : "combination"};

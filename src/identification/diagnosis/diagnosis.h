@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "identification/inference/estimates.h"
-#include "identification/inference/local.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/finding.h"
@@ -33,7 +32,7 @@ std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> recor
 std::vector<Finding> FindVaryingLoads(const ScaledRecords& data);
 
 /// Parameters on which, alone or combined, the records do not depend.
-std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local);
+std::optional<Finding> FindUndetermined(const Estimates& fitted);
 
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);

@@ -9,7 +9,6 @@
 #include "core/probability.h"
 #include "identification/gram/gram.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 
 namespace mindahl::identification {
@@ -117,10 +116,10 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
       EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(left.size())});
-  if (process.order > 0 || fitted.drawn().size() > 0 || !noise.of_records.empty()) {
+  if (process.order > 0 || noise.drawn.size() > 0 || !noise.of_records.empty()) {
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
-    gram.SetNoise(CorrelatedProduct(data, process, noise, fitted.drawn(), columns));
+    gram.SetNoise(noise.Product(data.records, process, columns));
     axes = gram.AxesOf(all);
   }
   AdequacyTest test;

@@ -1,5 +1,8 @@
 #include "identification/inference/estimates.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,31 +43,95 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   return values;
 }
 
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
+                          std::span<const std::size_t> columns) {
+  const std::size_t samples = problem.size();
+  const auto rows = static_cast<Eigen::Index>(samples);
+  Linearization at{.jacobian = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(columns.size())),
+                   .residual = Eigen::VectorXd(rows)};
+  response.Bind(problem);
+  Differentiate(problem, theta, response, columns, {at.residual.data(), samples},
+                {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
+  return at;
+}
+
+Eigen::MatrixXd Estimates::FindDirections(const Eigen::MatrixXd& priors) {
+  // Singular values below this fraction of the largest are rounding of unit columns.
+  constexpr double kRankTolerance = 1e-11;
+  // A parameter with more than this component in a direction without effect is not determined.
+  constexpr double kOpenComponent = 1e-3;
+  const Eigen::Index size = priors.cols();
+  // R of J = QR has its singular values and is small, however long the record.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factors(at_.jacobian);
+  const Eigen::MatrixXd triangle = factors.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  Eigen::MatrixXd rows(2 * size, size);
+  rows << triangle, priors;
+  // Columns are scaled to one, whatever their units.
+  const Eigen::VectorXd scale =
+      rows.colwise().norm().unaryExpr([](double norm) { return norm == 0 ? 1.0 : 1 / norm; });
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows * scale.asDiagonal(), Eigen::ComputeThinV);
+  Eigen::MatrixXd directions(size, size);
+  Eigen::Index rank = 0;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const double value = svd.singularValues()[k];
+    const Eigen::VectorXd direction = svd.matrixV().col(k);
+    if (value > kRankTolerance * svd.singularValues()[0]) {
+      directions.col(rank++) = scale.cwiseProduct(direction) / value;
+      continue;
+    }
+    ++open_directions_;
+    for (Eigen::Index j = 0; j < size; ++j) {
+      if (std::abs(direction[j]) > kOpenComponent) determined_[static_cast<std::size_t>(j)] = false;
+    }
+  }
+  return directions.leftCols(rank);
+}
+
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     Eigen::MatrixXd drawn, const FitOptions& options, Linearization at)
+                     const FitOptions& options, Linearization at)
     : problem_(problem),
       solution_(solution),
       noise_(noise),
-      drawn_(std::move(drawn)),
       confidence_(options.confidence),
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
                                 options.confidence)),
       variance_(noise.variance * noise.repeating),
-      at_(std::move(at)) {
-  local_ = AnalyseJacobian(problem, at_.jacobian, noise, drawn_);
+      at_(std::move(at)),
+      determined_(problem.parameters.free().size(), true) {
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  if (free.empty()) return;
+  // A prior is one more reading, with the noise of the others.
+  Eigen::VectorXd weights(std::ssize(free));
+  std::ranges::transform(free, weights.begin(),
+                         [&](std::size_t p) { return problem.parameters[p].prior_root_weight; });
+  const Eigen::MatrixXd priors = weights.asDiagonal();
+  const Eigen::MatrixXd directions = FindDirections(priors);
+  // JH has orthonormal columns, so that the noise makes a product of order one: between two
+  // inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
+  Eigen::MatrixXd product =
+      noise.Product(problem.data->records, noise.autocorrelation, at_.jacobian * directions);
+  const double by_fit = product.trace();
+  product += (priors * directions).transpose() * (priors * directions);
+  // Without what rounding leaves below zero.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(product);
+  const Eigen::MatrixXd root = directions * pairs.eigenvectors() *
+                               pairs.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  // Element by element: symmetric to the last bit.
+  factor_ = root.lazyProduct(root.transpose());
+  white_factor_ = directions.lazyProduct(directions.transpose());
   // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
   // than the noise's variance; beyond most_absorbed no more is corrected.
-  if (noise.is_known || drawn_.size() > 0) return;
+  if (noise.is_known || noise.drawn.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
-  const auto parameters = static_cast<double>(problem.parameters.free().size());
-  const double absorbed = std::min(local_.absorbed, options.thresholds.most_absorbed * count);
+  const auto parameters = static_cast<double>(free.size());
+  const double absorbed = std::min(by_fit, options.thresholds.most_absorbed * count);
   if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
 }
 
 std::optional<Eigen::Index> Estimates::PlaceOf(std::size_t parameter) const {
   const std::vector<std::size_t>& free = problem_.parameters.free();
   const auto place = std::ranges::find(free, parameter) - free.begin();
-  if (place == std::ssize(free) || !local_.determined[static_cast<std::size_t>(place)]) return {};
+  if (place == std::ssize(free) || !determined_[static_cast<std::size_t>(place)]) return {};
   return place;
 }
 
@@ -72,7 +139,7 @@ double Estimates::ErrorOfTheta(std::size_t parameter) const {
   if (problem_.parameters[parameter].fixed) return 0.0;
   const std::optional<Eigen::Index> place = PlaceOf(parameter);
   if (!place) return std::numeric_limits<double>::infinity();
-  return std::sqrt(local_.factor(*place, *place) * variance_);
+  return std::sqrt(factor_(*place, *place) * variance_);
 }
 
 std::vector<double> Estimates::Beside(std::size_t parameter, double step) const {
@@ -80,8 +147,7 @@ std::vector<double> Estimates::Beside(std::size_t parameter, double step) const 
   theta[parameter] += step;
   const std::optional<Eigen::Index> place = PlaceOf(parameter);
   if (!place) return theta;
-  const Eigen::VectorXd others =
-      local_.white_factor.col(*place) / local_.white_factor(*place, *place);
+  const Eigen::VectorXd others = white_factor_.col(*place) / white_factor_(*place, *place);
   for (Eigen::Index j = 0; j < others.size(); ++j) {
     if (j != *place)
       theta[problem_.parameters.free()[static_cast<std::size_t>(j)]] += step * others[j];
@@ -127,18 +193,17 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   const auto sign = [&](std::size_t p) {
     return problem_.parameters[p].scale < 0 ? -1.0 : 1.0;  // the value falls where θ grows
   };
-  const Eigen::MatrixXd& factor = local_.factor;
-  const double cosine = factor(*i, *j) / std::sqrt(factor(*i, *i) * factor(*j, *j));
+  const double cosine = factor_(*i, *j) / std::sqrt(factor_(*i, *i) * factor_(*j, *j));
   return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
 double Estimates::WhiteShare(std::size_t parameter) const {
   const std::optional<Eigen::Index> place = PlaceOf(parameter);
   if (!place) return 1.0;
-  const double variance = variance_ * local_.factor(*place, *place);
+  const double variance = variance_ * factor_(*place, *place);
   // A correlation that is estimated from a handful of residuals may leave no variance at all.
   if (!(variance > 0)) return 1.0;
-  return noise_.variance * local_.white_factor(*place, *place) / variance;
+  return noise_.variance * white_factor_(*place, *place) / variance;
 }
 
 namespace {

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
@@ -44,20 +44,30 @@ void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios);
 /// Takes back the interval and the standard error.
 void WithdrawInterval(ParameterEstimate& estimate);
 
+/// A problem near one point.
+struct Linearization {
+  Eigen::MatrixXd jacobian;  // weighted
+  Eigen::VectorXd residual;  // weighted, model − measured
+};
+
+/// @param columns  positions in θ to differentiate by
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
+                          std::span<const std::size_t> columns);
+
 /// A problem with its solution and its noise, and what follows: standard errors, intervals and
-/// correlations from the likelihood's parabola at its maximum. Every later stage asks it.
+/// correlations from the likelihood's parabola at its maximum. Every later stage asks it. Never
+/// fails: by the singular values of the Jacobian, columns scaled to unit norm, it knows which
+/// parameters the data leave open.
 class Estimates {
  public:
   /// @param problem  with `solution` and `noise`, must outlive this
-  /// @param drawn    as of CorrelatedProduct()
   /// @param at       the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            Eigen::MatrixXd drawn, const FitOptions& options, Linearization at);
+            const FitOptions& options, Linearization at);
 
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] const Solution& solution() const { return solution_; }
   [[nodiscard]] const Noise& noise() const { return noise_; }
-  [[nodiscard]] const Eigen::MatrixXd& drawn() const { return drawn_; }
 
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
@@ -68,8 +78,8 @@ class Estimates {
   /// Standard error of θ; infinite where it is not determined, 0 where fixed.
   [[nodiscard]] double ErrorOfTheta(std::size_t parameter) const;
 
-  /// Returns the uncertainty of all free parameters together.
-  [[nodiscard]] const LocalUncertainty& local() const { return local_; }
+  /// Returns the number of directions in θ without effect on the residual.
+  [[nodiscard]] std::size_t open_directions() const { return open_directions_; }
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this fraction a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
@@ -91,15 +101,22 @@ class Estimates {
   /// Returns the place among the free parameters; nothing of one that is fixed or undetermined.
   [[nodiscard]] std::optional<Eigen::Index> PlaceOf(std::size_t parameter) const;
 
+  /// Finds the directions with an effect: a column each, in units of θ, orthonormal when J is
+  /// applied to them.
+  [[nodiscard]] Eigen::MatrixXd FindDirections(const Eigen::MatrixXd& priors);
+
   const Problem& problem_;
   const Solution& solution_;
   const Noise& noise_;
-  Eigen::MatrixXd drawn_;
   double confidence_;
   double quantile_;
   double variance_;
   Linearization at_;
-  LocalUncertainty local_;  // of all free parameters
+  // A row and a column a free parameter; times the variance of a residual the covariance:
+  Eigen::MatrixXd factor_;  // (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ where determined, JᵀRJ by the noise
+  Eigen::MatrixXd white_factor_;  // (JᵀJ)⁻¹: what white residuals would give
+  std::vector<bool> determined_;  // of each: no part in a direction without effect
+  std::size_t open_directions_ = 0;
 };
 
 /// Returns what a solution says of the parameters that are reported: values, without errors.

@@ -152,6 +152,40 @@ double Noise::degrees_of_freedom(std::size_t parameters) const {
   return std::max(effective_samples() - static_cast<double>(parameters), 1.0);
 }
 
+Eigen::MatrixXd Noise::Product(std::span<const ScaledRecord> records,
+                               const Autocorrelation& process,
+                               const Eigen::MatrixXd& jacobian) const {
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  Eigen::MatrixXd of_force = jacobian;
+  if (drawn.size() > 0) {
+    const Eigen::MatrixXd moved = jacobian.transpose() * drawn;
+    product =
+        moved * moved.transpose() / (static_cast<double>(drawn.cols()) * (variance * repeating));
+    const Eigen::Map<const Eigen::VectorXd> share(force_share.data(), jacobian.rows());
+    of_force = share.asDiagonal() * jacobian;
+  }
+  Eigen::Index begin = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const auto rows = static_cast<Eigen::Index>(records[r].size());
+    const double own = of_records.empty() ? 1.0 : of_records[r];
+    product += own * process.Quadratic(of_force.middleRows(begin, rows));
+    begin += rows;
+  }
+  return product;
+}
+
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual) {
+  return static_cast<double>(data.counted) /
+         EstimateAutocorrelation(data.records, residual).SquaredCorrelations();
+}
+
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response) {
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, theta, response, residual);
+  const auto least = static_cast<double>(problem.parameters.free().size() + 1);
+  return std::max(EffectiveSamples(*problem.data, residual), least);
+}
+
 Evidence::Evidence(std::size_t samples, double effective)
     : samples_(static_cast<double>(samples)), effective_(effective) {}
 

@@ -51,6 +51,7 @@ struct Noise {
   Autocorrelation autocorrelation;
   double repeating = 1.0;           // by how much a repeatable residual widens a variance
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
+  Eigen::MatrixXd drawn;            // weighted residuals that errors of δ make, a column a draw
   std::size_t outliers = 0;         // samples at less than half their weight
   std::size_t samples = 0;          // that count
 
@@ -60,7 +61,24 @@ struct Noise {
   /// Returns those of the variance: effective samples less fitted parameters, at least 1;
   /// practically infinite where it is known.
   [[nodiscard]] double degrees_of_freedom(std::size_t parameters) const;
+
+  /// Returns JᵀRJ of all records, each times its own variance over that of all; where the
+  /// displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's fraction of the noise and E the
+  /// K drawn residuals.
+  /// @param process   whose correlations R has
+  /// @param jacobian  weighted, of every sample
+  [[nodiscard]] Eigen::MatrixXd Product(std::span<const ScaledRecord> records,
+                                        const Autocorrelation& process,
+                                        const Eigen::MatrixXd& jacobian) const;
 };
+
+/// Returns the effective number of samples of residuals, weighted or not, one record after the
+/// other: those that count, over the variance inflation from autocorrelation.
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
+
+/// Returns the same of a solution's residuals, no fewer than determine its free parameters. Binds
+/// the response to the problem.
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response);
 
 /// Compares two fits to the same samples; every comparison of fits uses it.
 class Evidence {
