@@ -63,9 +63,7 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
   }
   // A fit that determines only a combination of parameters gives no start for the other law.
   if (fit.FindFinding("not_identifiable", "combination") != nullptr) return others;
-  for (const ParameterEstimate& estimate : fit.parameters) {
-    if (estimate.status == ParameterStatus::kFree) others.start[estimate.name] = estimate.value;
-  }
+  StartFrom(fit, others);
   others.start["sigma"] = law.tangential_stiffness;
   others.start["slip_force"] = law.slip_force;
   if (!others.fixed.contains("alpha")) others.start["alpha"] = law.shape_exponent;

@@ -17,55 +17,7 @@ namespace {
 
 constexpr std::size_t kFolds = 5;
 
-std::vector<ModelScore> ListCandidates(const FitOptions& options) {
-  const auto alpha = options.fixed.find("alpha");
-  const bool rig_is_known = options.fixed.contains("rig_stiffness");
-  std::vector<ModelScore> scores;
-  for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (model.shape_exponent && alpha != options.fixed.end() &&
-        *model.shape_exponent != alpha->second) {
-      continue;
-    }
-    scores.push_back({.model = &model});
-    const bool may_have_rig = !rig_is_known && (model.memory != models::Memory::kNone ||
-                                                !HasTerm(options, TermId::kAsymmetry));
-    if (may_have_rig) scores.push_back({.model = &model, .rig = true});
-  }
-  return scores;
-}
-
-FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
-  options.model = score.model;
-  if (score.rig) options.terms.emplace_back("rig_stiffness");
-  return options;
-}
-
-/// Scores the candidates by the criterion.
-/// @returns the fit with the least rms
-const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
-                                  std::vector<ModelScore>& scores) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const FitResult& best = *std::ranges::min_element(
-      fits, {}, [](const FitResult& fit) { return IsFitted(fit) ? fit.likelihood_rms : kNone; });
-  const auto samples = static_cast<double>(best.residuals.samples);
-  const Evidence evidence(best.residuals.samples,
-                          std::min(best.residuals.effective_samples, samples));
-  double least = kNone;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    ModelScore& score = scores[i];
-    score.rms = score.aicc = kNone;
-    if (!IsFitted(fits[i])) continue;
-    // Over the largest force: the criterion's floor is the rounding of forces of about one.
-    const double rms = fits[i].likelihood_rms / best.PeakForce();
-    score.rms = fits[i].rms;
-    score.aicc = evidence.Aicc(samples * rms * rms, score.free_parameters);
-    if (score.converged) least = std::min(least, score.aicc);
-  }
-  for (ModelScore& score : scores) {
-    score.delta_aicc = std::isfinite(least) ? score.aicc - least : score.aicc;
-  }
-  return best;
-}
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Returns the closed cycles, from one reversal to the next but one, of which samples count. A
 /// single one of a record is none: without it nothing of the kind would be left to fit.
@@ -83,19 +35,6 @@ std::vector<SampleRange> CyclesOf(const FitResult& fit) {
     if (closed.size() > 1) cycles.insert(cycles.end(), closed.begin(), closed.end());
   }
   return cycles;
-}
-
-/// Returns options under which the fit is found again from where it is.
-FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
-  HoldInitialStates(fit, options);
-  options.preparation.force_sense = fit.force_sense;
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.status == ParameterStatus::kFixed) continue;
-    // One that ran to a bound stays there.
-    (parameter.status == ParameterStatus::kFree ? options.start : options.fixed)[parameter.name] =
-        parameter.value;
-  }
-  return options;
 }
 
 /// Returns the root mean square error [N] of the prediction of cycles by fits to the others, dealt
@@ -132,22 +71,57 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
   if (options.response() != loop::Channel::kForce) {
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
-  std::vector<ModelScore> scores = ListCandidates(options);
+  const auto alpha = options.fixed.find("alpha");
+  std::vector<ModelScore> scores;
+  std::vector<FitOptions> asked;
   std::vector<FitResult> fits;
-  fits.reserve(scores.size());
-  for (ModelScore& score : scores) {
-    const FitResult& fit =
-        fits.emplace_back(Fitter(OptionsOf(score, options)).Fit(records, Depth::kIntervals));
-    score.converged = fit.converged;
-    score.free_parameters = fit.CountFreeParameters();
+  for (const models::FrictionModel& model : models::FrictionModels()) {
+    if (model.shape_exponent && alpha != options.fixed.end() &&
+        *model.shape_exponent != alpha->second) {
+      continue;
+    }
+    for (const bool rig : {false, true}) {
+      const bool may_have_rig =
+          !options.fixed.contains("rig_stiffness") &&
+          (model.memory != models::Memory::kNone || !HasTerm(options, TermId::kAsymmetry));
+      if (rig && !may_have_rig) continue;
+      FitOptions own = options;
+      own.model = &model;
+      if (rig) own.terms.emplace_back("rig_stiffness");
+      const FitResult& fit = fits.emplace_back(Fitter(own).Fit(records, Depth::kIntervals));
+      scores.push_back({.model = &model,
+                        .rig = rig,
+                        .converged = fit.converged,
+                        .free_parameters = fit.CountFreeParameters(),
+                        .rms = IsFitted(fit) ? fit.rms : kNone,
+                        .aicc = kNone});
+      asked.push_back(std::move(own));
+    }
   }
-  if (std::ranges::none_of(fits, IsFitted)) return scores;
-  const FitResult& best = ScoreByCriterion(fits, scores);
+  const FitResult& best = *std::ranges::min_element(
+      fits, {}, [](const FitResult& fit) { return IsFitted(fit) ? fit.likelihood_rms : kNone; });
+  if (!IsFitted(best)) return scores;
+  const auto samples = static_cast<double>(best.residuals.samples);
+  const Evidence evidence(best.residuals.samples,
+                          std::min(best.residuals.effective_samples, samples));
   const std::vector<SampleRange> cycles = CyclesOf(best);
-  for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
+  double least = kNone;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!IsFitted(fits[i])) continue;
+    // Over the largest force: the criterion's floor is the rounding of forces of about one.
+    const double rms = fits[i].likelihood_rms / best.PeakForce();
+    scores[i].aicc = evidence.Aicc(samples * rms * rms, scores[i].free_parameters);
     if (!scores[i].converged) continue;
-    const FitOptions from_here = ContinuedFrom(fits[i], OptionsOf(scores[i], options));
+    least = std::min(least, scores[i].aicc);
+    if (cycles.empty()) continue;
+    FitOptions& from_here = asked[i];
+    HoldInitialStates(fits[i], from_here);
+    StartFrom(fits[i], from_here);
+    from_here.preparation.force_sense = fits[i].force_sense;
     scores[i].held_out_rms = PredictCycles(records, from_here, best, cycles);
+  }
+  for (ModelScore& score : scores) {
+    score.delta_aicc = std::isfinite(least) ? score.aicc - least : score.aicc;
   }
   return scores;
 }
