@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -23,11 +24,18 @@
 namespace mindahl::identification {
 namespace {
 
+/// True if the residuals are rounding errors: they are no noise, are autocorrelated as they like,
+/// and nothing is to be learnt from what they look like.
+bool LeavesOnlyRounding(const Problem& problem, const Solution& solution) {
+  const auto count = static_cast<double>(problem.data->counted);
+  return std::sqrt(solution.sum_of_squares / count) < kOnlyRounding;
+}
+
 /// Estimates the noise and the statistics of the residuals.
 /// @param residual  weighted, of every sample
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
                   std::span<const double> residual, Noise& noise, FitResult& result) {
-  if (!LeavesOnlyRounding(problem, solution.sum_of_squares)) {
+  if (!LeavesOnlyRounding(problem, solution)) {
     noise.autocorrelation = EstimateAutocorrelation(problem.data->records, residual);
     const bool any_differs = problem.data->records.size() > 1 && !noise.is_known;
     if (any_differs) noise.of_records = VariancesOfRecords(*problem.data, residual);
@@ -41,13 +49,12 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
     residual = residual.subspan(record.size());
     widening = std::max(widening, structure.Widening());
   }
-  if (!LeavesOnlyRounding(problem, solution.sum_of_squares)) noise.repeating = widening;
+  if (!LeavesOnlyRounding(problem, solution)) noise.repeating = widening;
   result.residuals = DescribeResiduals(result.records);
   result.residuals.effective_samples = noise.effective_samples();
-  Noise of_residuals = noise;
-  of_residuals.is_known = false;
   const std::size_t free = problem.parameters.free().size();
-  result.residuals.degrees_of_freedom = of_residuals.degrees_of_freedom(free);
+  result.residuals.degrees_of_freedom =
+      std::max(noise.effective_samples() - static_cast<double>(free), 1.0);
   result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
 }
 
@@ -58,7 +65,7 @@ void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptio
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
-  if (LeavesOnlyRounding(problem, solution.sum_of_squares)) {
+  if (LeavesOnlyRounding(problem, solution)) {
     result.adequacy.tried = 1;
     result.adequacy = GradeUse(thresholds, result);
     return;
@@ -118,7 +125,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Linearization at =
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  noise.drawn = WeightedForceErrors(attempt.drawn, problem, solution);
   const Estimates fitted(problem, solution, noise, options, std::move(at));
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);

@@ -83,15 +83,14 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   FindStartsOf(candidate, thinned, options, std::numeric_limits<double>::infinity(), solver);
   const std::vector<double> theta = candidate.starts.front().theta;
   solution.theta = theta;
-  Noise noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
-  if (drawn) FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
+  Noise noise;
+  FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
   solution.theta = theta;
   solution.converged = true;
   solution.side.assign(theta.size(), BoundSide::kInside);
   for (const std::size_t p : problem.parameters.free()) {
     solution.side[p] = SideOf(problem.parameters[p], theta[p]);
   }
-  noise.drawn = WeightedForceErrors(drawn.get(), problem, solution);
   const Estimates estimates(
       problem, solution, noise, options,
       LinearizeAt(problem, theta, solver.response, problem.parameters.free()));

@@ -165,11 +165,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
   RequireToldAsymmetry(best.problem);
   if (!std::isfinite(best.solution.sum_of_squares)) return solved;
   TryTurnsBetweenSamples(attempt, best);
-  if (options.loss == Loss::kNone && attempt.drawn == nullptr) {
-    solved.noise = PlainNoise(attempt.data, options, best.solution.sum_of_squares,
-                              best.problem.parameters.free().size());
-    return solved;
-  }
   const auto fit_with_weights = [&] {
     solved.is_settled = FitWithWeights(best.problem, attempt.data, options, attempt.drawn,
                                        attempt.solver, best.solution, solved.noise);

@@ -190,25 +190,11 @@ TEST(Evidence, RoundingErrorsSayNothing) {
   EXPECT_LT(evidence.Aicc(floor, 3), evidence.Aicc(2 * floor, 3));
 }
 
-TEST(Evidence, FStatisticScalesWithFractionOfEffectiveSamples) {
-  // (3 − 2)/0.5·40/100
-  EXPECT_NEAR(Evidence(100, 40.0).FStatistic(3.0, 2.0, 0.5), 0.8, kRounding);
-  EXPECT_EQ(Evidence(100, 40.0).FStatistic(2.0, 3.0, 0.5), 0.0) << "a fit that is better by chance";
-}
-
 TEST(Evidence, AiccHasTheSmallSampleTermOfAllSamplesAndTheVarianceForAParameter) {
   // k = 3 + 1: 8·ln(5/20) + 2·4 + 2·4·5/(20 − 4 − 1)
   EXPECT_NEAR(Evidence(20, 8.0).Aicc(5.0, 3), 8 * std::log(0.25) + 8 + 40.0 / 15, kRounding);
   // Nothing is divided by less than one.
   EXPECT_NEAR(Evidence(5, 5.0).Aicc(5.0, 4), 10 + 60, kRounding);
-}
-
-TEST(Evidence, OfANoiseIsThatOfItsEffectiveSamples) {
-  Noise noise = testing::KnownNoise(1.0, 100);
-  noise.autocorrelation = testing::FirstOrder(0.5);
-  noise.repeating = 2.0;
-  // 1 + 2Σ0.25^k = 5/3
-  EXPECT_NEAR(Evidence(noise).LikelihoodRatio(std::exp(1.0), 1.0), 100 / (2 * 5.0 / 3), 1e-9);
 }
 
 TEST(Noise, DegreesOfFreedomAreEffectiveSamplesLessParameters) {

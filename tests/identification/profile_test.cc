@@ -28,7 +28,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     Noise noise = KnownNoise(variance, stages.data.counted);
     if (rho > 0) noise.autocorrelation = testing::FirstOrder(rho);
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);
-    const double share = estimates.WhiteShare(kSlipForce);
+    const double share = variance * estimates.FStatistic(kSlipForce, best.sum_of_squares + 1);
     EXPECT_EQ(share<0.5, rho> 0);
     const Ends ends = Profile(estimates, kSlipForce, stages.options, stages.solver);
     ASSERT_TRUE(ends.lower && ends.upper);

@@ -69,12 +69,6 @@ TEST(Reweighting, ForceNoiseWithDisplacementNoiseCountsDegreesOfFreedom) {
   for (const double share : noise.force_share) EXPECT_NEAR(share, 1.0, 1e-3);
 }
 
-TEST(Reweighting, RobustScaleIsTheMedianMagnitudeOfNormalValues) {
-  EXPECT_NEAR(RobustScale({-3.0, 1.0, 2.0}), 2 * 1.482602218505602, 1e-12);
-  // Φ(1/1.4826) = 3/4
-  EXPECT_NEAR(std::erf(1 / RobustScale({1.0}) / std::sqrt(2.0)), 0.5, 1e-12);
-}
-
 // ---
 // Drawn readings against readings that are drawn here.
 

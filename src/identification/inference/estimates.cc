@@ -197,13 +197,13 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
-double Estimates::WhiteShare(std::size_t parameter) const {
+double Estimates::FStatistic(std::size_t parameter, double sum_of_squares) const {
+  const double rise = std::max(sum_of_squares - solution_.sum_of_squares, 0.0);
   const std::optional<Eigen::Index> place = PlaceOf(parameter);
-  if (!place) return 1.0;
-  const double variance = variance_ * factor_(*place, *place);
+  const double variance = place ? variance_ * factor_(*place, *place) : 0.0;
   // A correlation that is estimated from a handful of residuals may leave no variance at all.
-  if (!(variance > 0)) return 1.0;
-  return noise_.variance * white_factor_(*place, *place) / variance;
+  if (!(variance > 0)) return rise / noise_.variance;
+  return rise * white_factor_(*place, *place) / variance;
 }
 
 namespace {

@@ -80,9 +80,10 @@ class Estimates {
 
   /// Returns the number of directions in θ without effect on the residual.
   [[nodiscard]] std::size_t open_directions() const { return open_directions_; }
-  /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
-  /// this fraction a likelihood ratio counts. 1 where it is not determined.
-  [[nodiscard]] double WhiteShare(std::size_t parameter) const;
+  /// Returns F of a fit with the parameter held, or another in its place, against the solution: the
+  /// rise of the sum of squares over the variance of a residual, which counts by the parameter's
+  /// variance if residuals were white and did not repeat over what it is.
+  [[nodiscard]] double FStatistic(std::size_t parameter, double sum_of_squares) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Returns the half width of an interval in standard errors.

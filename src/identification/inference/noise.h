@@ -87,16 +87,9 @@ class Evidence {
   /// @param effective  as many independent ones as say the same, of what is compared
   Evidence(std::size_t samples, double effective);
 
-  /// Takes the sample size over the variance inflation from autocorrelation.
-  explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
-
   /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
   /// sums that are both no less than rounding errors leave.
   [[nodiscard]] double LikelihoodRatio(double held, double free) const;
-
-  /// Returns the same statistic where its distribution is asked for: F = (SS₀ − SS₁)/s²·n_eff/n of
-  /// one more parameter, s² the variance of a residual.
-  [[nodiscard]] double FStatistic(double held, double free, double variance) const;
 
   /// Akaike's criterion with its small-sample term (Hurvich & Tsai 1989), for Gaussian residuals of
   /// unknown variance. The effective samples weigh the likelihood only: a wrong law leaves a
@@ -109,10 +102,6 @@ class Evidence {
   double samples_;
   double effective_;
 };
-
-/// True if the residuals are rounding errors: they are no noise, are autocorrelated as they like,
-/// and nothing is to be learnt from what they look like.
-bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares);
 
 /// Returns the number of samples that count.
 std::size_t CountedSamplesOf(const ScaledRecord& record);

@@ -10,49 +10,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// A parabola's minimum beside the fit is a start for steps that are shorter.
-constexpr double kParabolic = 0.5;
-
-/// The likelihood with one parameter held, the others fitted again. The solver is its own.
-class HeldParameter {
- public:
-  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
-                Solver& solver)
-      : problem_(fitted.problem()),
-        parameter_(parameter),
-        best_(fitted.solution()),
-        variance_(fitted.noise().variance),
-        evidence_(fitted.noise().samples,
-                  static_cast<double>(fitted.noise().samples) * fitted.WhiteShare(parameter)),
-        options_(options),
-        solver_(solver) {
-    problem_.parameters.Fix(parameter, best_.theta[parameter]);
-    solver_.Bind(problem_);
-  }
-  HeldParameter(const HeldParameter&) = delete;
-  HeldParameter& operator=(const HeldParameter&) = delete;
-
-  /// @param start  θ of the others
-  /// @returns F of the best fit against that with the parameter at θ, which is in solution()
-  double At(double theta, std::vector<double> start) {
-    start[parameter_] = theta;
-    solver_.HoldAt(parameter_, theta);
-    solver_.Solve(start, options_, solution_);
-    return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
-  }
-  [[nodiscard]] const Solution& solution() const { return solution_; }
-
- private:
-  Problem problem_;
-  std::size_t parameter_;
-  const Solution& best_;
-  double variance_;
-  Evidence evidence_;
-  SolverOptions options_;
-  Solver& solver_;
-  Solution solution_;
-};
-
 /// Finds the step, from 0 on, at which a root of F over the critical one is 1; nothing where it is
 /// less at the limit.
 /// @param root_at  the root at a step
@@ -61,24 +18,21 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   constexpr int kMostLooks = 24;
   constexpr double kClose = 0.01;       // of the root of F over the critical one
   constexpr double kLeastGrowth = 0.1;  // the next step is at most ten times the last
-  double inside = 0.0;
-  double root_inside = 0.0;
-  std::optional<double> outside;
-  double root_outside = 0.0;
+  constexpr double kFromEnds = 0.1;     // a kink is not stepped towards for ever
+  std::pair inside = {0.0, 0.0};        // step and root
+  std::optional<std::pair<double, double>> outside;
   for (int look = 0; look < kMostLooks; ++look) {
     const double root = root_at(step);
     if (std::abs(root - 1) < kClose) return step;
     if (root < 1) {
-      inside = step;
-      root_inside = root;
+      inside = {step, root};
     } else {
-      outside = step;
-      root_outside = root;
+      outside = {step, root};
     }
     if (outside) {
-      const double fraction = (1 - root_inside) / (root_outside - root_inside);
-      constexpr double kFromEnds = 0.1;  // a kink is not stepped towards for ever
-      step = inside + std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (*outside - inside);
+      const double fraction = (1 - inside.second) / (outside->second - inside.second);
+      step = inside.first +
+             std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (outside->first - inside.first);
     } else {
       if (step >= limit) return std::nullopt;
       step = std::min(step / std::max(root, kLeastGrowth), limit);
@@ -87,48 +41,81 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   return outside ? std::optional(step) : std::nullopt;
 }
 
-/// Finds θ where F of a held parameter is the critical one on one side of the best fit; the bound
-/// where it is less up to there; nothing where that is a limit of the search, or F is less for a
-/// factor of a thousand.
-/// @param towards  −1 or 1
-std::optional<double> LikelihoodEnd(HeldParameter& held, const Estimates& fitted,
-                                    std::size_t parameter, double towards) {
-  constexpr double kFarthest = 6.9;  // of a logarithm
-  const Problem& problem = fitted.problem();
-  const Solution& best = fitted.solution();
-  const Parameter& of = problem.parameters[parameter];
-  const double from = best.theta[parameter];
-  const double limit =
-      towards < 0 ? std::max(of.lower, from - kFarthest) : std::min(of.upper, from + kFarthest);
-  const double first = std::min({fitted.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
-  std::vector<double> start = fitted.Beside(parameter, towards * first);
-  std::vector<double> inside = best.theta;
-  std::vector<double> last;
-  const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
-    const double root = std::sqrt(held.At(from + towards * at, start) / fitted.critical());
-    last = held.solution().theta;
-    // A search that lost the valley is not gone on from.
-    if (root < 1) inside = last;
-    start = inside;
-    return root;
-  });
-  // With α at its upper bound, the bound limits Tc and the data do not: the interval stays open.
-  const Parameter& shape = problem.parameters[kShape];
-  const bool by_shape = towards > 0 && parameter == kSlipForce && !shape.fixed &&
-                        SideOf(shape, last[kShape]) == BoundSide::kUpper;
-  if (step) return by_shape ? std::nullopt : std::optional(from + towards * *step);
-  const BoundSide side = towards < 0 ? BoundSide::kLower : BoundSide::kUpper;
-  const bool is_bound = limit == (towards < 0 ? of.lower : of.upper);
-  return is_bound && !by_shape && !IsSearchLimit(of, side) ? std::optional(limit) : std::nullopt;
-}
+/// The likelihood with one parameter held, the others fitted again. The solver is its own.
+class HeldParameter {
+ public:
+  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
+                Solver& solver)
+      : fitted_(fitted),
+        problem_(fitted.problem()),
+        parameter_(parameter),
+        options_(options),
+        solver_(solver) {
+    problem_.parameters.Fix(parameter, fitted.solution().theta[parameter]);
+    solver_.Bind(problem_);
+  }
+  HeldParameter(const HeldParameter&) = delete;
+  HeldParameter& operator=(const HeldParameter&) = delete;
 
-/// True if a slip force far above the largest force, which is about 1, is not excluded.
-bool IsOpenAbove(HeldParameter& held, const Estimates& fitted, const Thresholds& thresholds) {
-  const double far = std::log(thresholds.far_slip_force);
-  const Parameter& of = fitted.problem().parameters[kSlipForce];
-  if (far > of.upper || far < fitted.solution().theta[kSlipForce]) return false;
-  return held.At(far, fitted.solution().theta) < thresholds.open_slip_force;
-}
+  /// True if a slip force far above the largest force, which is about 1, is not excluded.
+  bool IsOpenAbove(const Thresholds& thresholds) {
+    const double far = std::log(thresholds.far_slip_force);
+    const std::vector<double>& best = fitted_.solution().theta;
+    if (far > problem_.parameters[kSlipForce].upper || far < best[kSlipForce]) return false;
+    return At(far, best) < thresholds.open_slip_force;
+  }
+
+  /// Finds the value where F is the critical one on one side of the best fit; the bound where it is
+  /// less up to there; nothing where that is a limit of the search, or F is less for a factor of a
+  /// thousand.
+  /// @param towards  −1 or 1, of θ
+  std::optional<double> End(double towards) {
+    constexpr double kFarthest = 6.9;   // of a logarithm
+    constexpr double kParabolic = 0.5;  // the parabola's minimum is a start for shorter steps
+    const Parameter& of = fitted_.problem().parameters[parameter_];
+    const double from = fitted_.solution().theta[parameter_];
+    const double limit =
+        towards < 0 ? std::max(of.lower, from - kFarthest) : std::min(of.upper, from + kFarthest);
+    const double first =
+        std::min({fitted_.HalfWidth(parameter_), kParabolic, std::abs(limit - from)});
+    std::vector<double> start = fitted_.Beside(parameter_, towards * first);
+    std::vector<double> inside = fitted_.solution().theta;
+    const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
+      const double root = std::sqrt(At(from + towards * at, start) / fitted_.critical());
+      // A search that lost the valley is not gone on from.
+      if (root < 1) inside = solution_.theta;
+      start = inside;
+      return root;
+    });
+    // With α at its upper bound, the bound limits Tc and the data do not: the interval stays open.
+    const Parameter& shape = problem_.parameters[kShape];
+    if (towards > 0 && parameter_ == kSlipForce && !shape.fixed &&
+        SideOf(shape, solution_.theta[kShape]) == BoundSide::kUpper) {
+      return std::nullopt;
+    }
+    if (step) return of.ToValue(from + towards * *step);
+    const BoundSide side = towards < 0 ? BoundSide::kLower : BoundSide::kUpper;
+    const bool is_bound = limit == (towards < 0 ? of.lower : of.upper);
+    return is_bound && !IsSearchLimit(of, side) ? std::optional(of.ToValue(limit)) : std::nullopt;
+  }
+
+ private:
+  /// @param start  θ of the others
+  /// @returns F of the best fit against that with the parameter at θ, which is the solution
+  double At(double theta, std::vector<double> start) {
+    start[parameter_] = theta;
+    solver_.HoldAt(parameter_, theta);
+    solver_.Solve(start, options_, solution_);
+    return fitted_.FStatistic(parameter_, solution_.sum_of_squares);
+  }
+
+  const Estimates& fitted_;
+  Problem problem_;
+  std::size_t parameter_;
+  SolverOptions options_;
+  Solver& solver_;
+  Solution solution_;
+};
 
 bool IsFree(const Estimates& fitted, std::size_t parameter) {
   const Parameter& of = fitted.problem().parameters[parameter];
@@ -143,8 +130,8 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
       result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
-  HeldParameter held(fitted, kSlipForce, SolverOptionsOf(options), solver);
-  return IsOpenAbove(held, fitted, options.thresholds);
+  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver)
+      .IsOpenAbove(options.thresholds);
 }
 
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail: all of a loop that
@@ -177,15 +164,9 @@ Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& o
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = fitted.problem().parameters.free().size() > kMany;
   HeldParameter held(fitted, parameter, search, solver);
-  const Parameter& of = fitted.problem().parameters[parameter];
-  const auto value_of = [&](std::optional<double> theta) {
-    return theta ? std::optional(of.ToValue(*theta)) : std::nullopt;
-  };
-  const std::optional<double> lower = LikelihoodEnd(held, fitted, parameter, -1.0);
-  if (parameter == kSlipForce && IsOpenAbove(held, fitted, options.thresholds)) {
-    return {.lower = value_of(lower), .upper = std::nullopt};
-  }
-  return {.lower = value_of(lower), .upper = value_of(LikelihoodEnd(held, fitted, parameter, 1.0))};
+  const std::optional<double> lower = held.End(-1.0);
+  const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
+  return {.lower = lower, .upper = is_open ? std::nullopt : held.End(1.0)};
 }
 
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,

@@ -45,17 +45,6 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
   return forces.colwise() - force;
 }
 
-Eigen::MatrixXd WeightedForceErrors(const loop::DrawnReadings* drawn, const Problem& problem,
-                                    const Solution& solution) {
-  if (drawn == nullptr) return {};
-  Eigen::MatrixXd errors = ForceErrors(*drawn, problem, solution.theta);
-  Eigen::Index row = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const double weight : record.root_weight) errors.row(row++) *= weight;
-  }
-  return errors;
-}
-
 namespace {
 
 constexpr int kMostRounds = 50;
@@ -65,6 +54,28 @@ constexpr double kHarmless = 1e-2;  // likewise, of what goes on for ever: it ma
 /// Samples that count less the free parameters, at least 1.
 double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
   return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
+}
+
+/// Standard deviation of normal values of mean 0, one or more, by the median of their magnitudes,
+/// which outliers do not move.
+double RobustScale(std::vector<double> residuals) {
+  return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
+                                          residuals.begin(), residuals.end(), 0.0);
+}
+
+/// The noise of plain residuals: known, or from their sum of squares.
+/// @param parameters  free ones
+Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
+                 std::size_t parameters) {
+  Noise noise;
+  noise.samples = data.counted;
+  noise.is_known = options.response_noise().has_value();
+  const double known = options.response_noise().value_or(0.0) / data.response_unit();
+  noise.variance =
+      std::max(noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(data, parameters),
+               kRoundingRms * kRoundingRms);
+  noise.force = std::sqrt(noise.variance);
+  return noise;
 }
 
 double Rms(const Eigen::VectorXd& values) {
@@ -154,16 +165,22 @@ class Reweighting {
   }
 
   /// Writes the cost of the solution under the weights that it implies.
-  void FillCost() {
+  /// @returns what these stand for
+  Noise Finish() {
     std::vector<double> residual(problem_.size());
     EvaluateResidual(problem_, solution_.theta, solver_.response, residual);
     solution_.sum_of_squares = problem_.parameters.PriorCost(solution_.theta);
     for (const double r : residual) solution_.sum_of_squares += r * r;
     solution_.report.final_cost = solution_.sum_of_squares / 2;
+    noise_.drawn = std::move(errors_);
+    Eigen::Index row = 0;
+    for (const ScaledRecord& record : data_.records) {
+      for (const double weight : record.root_weight) {
+        if (noise_.drawn.size() > 0) noise_.drawn.row(row++) *= weight;
+      }
+    }
+    return std::move(noise_);
   }
-
-  /// Returns what the last weights stand for.
-  [[nodiscard]] const Noise& noise() const { return noise_; }
 
  private:
   void PredictForce() {
@@ -185,9 +202,9 @@ class Reweighting {
     // The draws of the last time hold where the forces have moved by next to nothing since.
     if (drawn_ != nullptr &&
         (drawn_at_.size() == 0 || !(Rms(force_ - drawn_at_) < kHarmless * unit_))) {
-      const Eigen::MatrixXd errors = ForceErrors(*drawn_, problem_, solution_.theta);
+      errors_ = ForceErrors(*drawn_, problem_, solution_.theta);
       from_displacement_ +=
-          fraction_ * (errors.rowwise().squaredNorm() / static_cast<double>(errors.cols()) -
+          fraction_ * (errors_.rowwise().squaredNorm() / static_cast<double>(errors_.cols()) -
                        from_displacement_);
       drawn_at_ = force_;
     }
@@ -264,6 +281,7 @@ class Reweighting {
   Eigen::VectorXd force_;              // of the solution
   Eigen::VectorXd from_displacement_;  // variance σ_T² of the draws at every sample
   double fraction_ = 1.0;              // of new draws in it
+  Eigen::MatrixXd errors_;             // of the last draws
   Eigen::VectorXd drawn_at_;           // forces
   double unit_ = 0.0;                  // deviation of the weighted residuals
   double degrees_ = 1.0;
@@ -272,34 +290,19 @@ class Reweighting {
 
 }  // namespace
 
-double RobustScale(std::vector<double> residuals) {
-  return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
-                                          residuals.begin(), residuals.end(), 0.0);
-}
-
-Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
-                 std::size_t parameters) {
-  Noise noise;
-  noise.samples = data.counted;
-  noise.is_known = options.response_noise().has_value();
-  const double known = options.response_noise().value_or(0.0) / data.response_unit();
-  noise.variance =
-      std::max(noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(data, parameters),
-               kRoundingRms * kRoundingRms);
-  noise.force = std::sqrt(noise.variance);
-  return noise;
-}
-
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const loop::DrawnReadings* drawn, Solver& solver, Solution& solution,
                     Noise& noise) {
+  if (options.loss == Loss::kNone && drawn == nullptr) {
+    noise = PlainNoise(data, options, solution.sum_of_squares, problem.parameters.free().size());
+    return true;
+  }
   Reweighting fits(problem, data, options, drawn, solver, solution);
   // Other losses have several minima: they start from Huber's, which has one.
   if (options.loss == Loss::kCauchy || options.loss == Loss::kTukey) fits.Settle(Loss::kHuber);
   bool is_settled = fits.Settle(options.loss);
   if (options.loss != Loss::kNone) is_settled = fits.ApplyLoss(options.loss) && is_settled;
-  fits.FillCost();
-  noise = fits.noise();
+  noise = fits.Finish();
   return is_settled;
 }
 

@@ -20,21 +20,8 @@ namespace mindahl::identification {
 Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& problem,
                             std::span<const double> theta);
 
-/// Returns these errors of a solution, weighted as its residuals; empty where none are drawn.
-Eigen::MatrixXd WeightedForceErrors(const loop::DrawnReadings* drawn, const Problem& problem,
-                                    const Solution& solution);
-
-/// Standard deviation of normal values of mean 0 by the median of their magnitudes, which outliers
-/// do not move.
-/// @param residuals  at least one
-double RobustScale(std::vector<double> residuals);
-
-/// The noise of plain residuals: known, or from their sum of squares.
-/// @param parameters  free ones
-Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
-                 std::size_t parameters);
-
-/// Fits again and again under the weights that the last fit implies, until they settle:
+/// Finds the noise of a fit: known, or of its residuals. Where these have weights it fits again and
+/// again under those that the last fit implies, until they settle:
 /// - errors of the displacement act as force noise of the variance σ_T² that their draws have at a
 ///   sample (effective variance, Orear 1982): w = σ_F²/(σ_F² + σ_T²), so that steep branches do not
 ///   dominate; σ_F² where it is not known is what the residuals leave for it

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "identification/inference/noise.h"
 #include "identification/solve/search.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
@@ -31,7 +30,6 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
                                            Solver& solver, ParameterEstimates& parameters) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
-  const Noise& noise = fitted.noise();
   const Thresholds& thresholds = options.thresholds;
   const ParameterEstimate& shape = parameters[kShape];
   // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
@@ -57,9 +55,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   Descend(sprung, with_rig, solver);
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
-  const auto samples = static_cast<double>(noise.samples);
-  const double loss = Evidence(noise.samples, samples * fitted.WhiteShare(kShape))
-                          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
+  const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);
   if (!solution.converged || !(loss < thresholds.indistinguishable)) return std::nullopt;
   const models::SeriesSpring rig = sprung.problem.parameters.RigAt(solution.theta);
   IncludeLaw(sprung.problem.parameters.LawAt(solution.theta), rig, thresholds, parameters);
