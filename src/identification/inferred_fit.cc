@@ -133,22 +133,13 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, {}, thresholds, result.parameters);
   if (!problem.data->is_forced()) CoverSteps(attempt, result);
-  const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
+  const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
-  if (is_judged) {
-    if (options.initial_states.empty()) {
-      Append(result.findings, FindUnknownPast(problem, solution, thresholds));
-    }
-    Append(result.findings, FindFewPlaces(problem, thresholds));
-    if (!problem.data->is_forced()) Append(result.findings, FindForceAtLimit(attempt.prepared));
-  }
-  Append(result.findings, FindUntoldAsymmetry(result, thresholds));
-  Append(result.findings, FindContradictedPrior(fitted, thresholds));
-  Append(result.findings, FindOpenSlipForce(result));
+  Append(result.findings, FindOnParameters(fitted, attempt.prepared, options, result));
   if (const std::optional<Finding> inadequate = FindInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result), *inadequate);
   }

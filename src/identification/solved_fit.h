@@ -1,17 +1,13 @@
 #pragma once
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
-#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
@@ -61,13 +57,5 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
 std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const ScaledRecords& data,
                                      const FitResult& fit);
-
-inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
-  if (finding) findings.push_back(std::move(*finding));
-}
-
-inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
-  std::ranges::move(more, std::back_inserter(findings));
-}
 
 }  // namespace mindahl::identification

@@ -19,8 +19,6 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   auto findings = FindOpenSlipForce(result);
   ASSERT_EQ(findings.size(), 2U);
   EXPECT_EQ(findings[0].code, "bounded_below");
-  EXPECT_EQ(findings[0].Number("peak_force"), 2.0);
-  EXPECT_EQ(findings[0].Number("amplitude"), 1e-6);
   EXPECT_THAT(findings[0].parameters, ElementsAre("slip_force"));
   EXPECT_EQ(findings[1].code, "not_identifiable");
   EXPECT_EQ(findings[1].kind, "with_slip_force");
@@ -29,8 +27,6 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   result.records[0].facts.peak_force = 1.75;
   result.records[0].facts.amplitude = 0.5e-6;
   findings = FindOpenSlipForce(result);
-  EXPECT_EQ(findings[0].Number("peak_force"), 1.75) << "as the report has it";
-  EXPECT_EQ(findings[0].Number("amplitude"), 0.5e-6);
   EXPECT_EQ(findings[0].kind, "");
   result.records[0].facts.energy_ratio = 0.9;
   result.records[0].facts.half_gap = 1.5;

@@ -52,27 +52,23 @@ std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> recor
   constexpr double kAway = 5.0;    // steps of the displacement: a pause goes on where it began
   std::vector<Finding> findings;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> displacement = records[r].record.displacement;
-    const std::span<const double> time = records[r].record.time;
-    if (time.size() < 2) continue;
-    std::size_t widest = 1;
-    double travel = 0.0;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-      if (time[i] - time[i - 1] > time[widest] - time[widest - 1]) widest = i;
-      travel += std::abs(displacement[i] - displacement[i - 1]);
-    }
-    const double gap = time[widest] - time[widest - 1];
-    const double rest = time.back() - time.front() - gap;
-    const auto others = static_cast<double>(time.size() - 2);
+    const loop::RecordView& record = records[r].record;
+    if (record.time.size() < 2) continue;
+    const Eigen::Index steps = std::ssize(record.time) - 1;
+    const Eigen::Map<const Eigen::ArrayXd> time(record.time.data(), steps + 1);
+    const Eigen::Map<const Eigen::ArrayXd> displacement(record.displacement.data(), steps + 1);
+    const Eigen::ArrayXd ways = (displacement.tail(steps) - displacement.head(steps)).abs();
+    Eigen::Index widest = 0;
+    const double gap = (time.tail(steps) - time.head(steps)).maxCoeff(&widest);
+    const double rest = time[steps] - time[0] - gap;
+    const auto others = static_cast<double>(steps - 1);
     const double strokes = static_cast<double>(records[r].reversals.size()) + 1;
-    const double away = std::abs(displacement[widest] - displacement[widest - 1]);
-    if (!(gap > kLong * 2 * rest / strokes) || !(gap * others > kMeans * rest) ||
-        !(away * others > kAway * (travel - away))) {
-      continue;
+    if (gap > kLong * 2 * rest / strokes && gap * others > kMeans * rest &&
+        ways[widest] * others > kAway * (ways.sum() - ways[widest])) {
+      findings.push_back(
+          OfRecord(r, records.size(),
+                   {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest]}}}));
     }
-    findings.push_back(
-        OfRecord(r, records.size(),
-                 {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest - 1]}}}));
   }
   return findings;
 }
@@ -120,39 +116,14 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
     return findings;
   }
-  const loop::LoopFacts& facts = result.WidestRecord().facts;
   findings.push_back({.code = "bounded_below",
                       .parameters = {"slip_force"},
-                      .numbers = {{"peak_force", facts.peak_force}, {"amplitude", facts.amplitude}},
-                      .kind = loop::Slides(facts) ? "slides" : ""});
+                      .kind = loop::Slides(result.WidestRecord().facts) ? "slides" : ""});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
     findings.push_back(
         {.code = "not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
   }
   return findings;
-}
-
-std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
-                                             const Thresholds& thresholds) {
-  const Problem& problem = fitted.problem();
-  Finding finding{.code = "prior_contradicted"};
-  double farthest = 0.0;
-  for (const std::size_t p : problem.parameters.with_prior()) {
-    const Parameter& parameter = problem.parameters[p];
-    const double uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
-    // The fit includes the prior, whose variance is u²; its own error is e. So |θ − prior|/√(u² −
-    // e²) is the distance of the records' own estimate over the standard deviation of that
-    // distance.
-    const double left = uncertainty * uncertainty - std::pow(fitted.ErrorOfTheta(p), 2);
-    const double distance = std::abs(fitted.solution().theta[p] - parameter.prior_theta) /
-                            (left > 0 ? std::sqrt(left) : uncertainty);
-    if (!(distance > thresholds.prior_distance)) continue;
-    finding.parameters.push_back(problem.parameters.NameOf(p));
-    farthest = std::max(farthest, distance);
-  }
-  if (finding.parameters.empty()) return std::nullopt;
-  finding.numbers = {{"distance", farthest}};
-  return finding;
 }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
@@ -183,6 +154,21 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+  for (const std::size_t p : problem.parameters.free()) {
+    const Parameter& parameter = problem.parameters[p];
+    const bool is_limit_of_law = parameter.term->positive || p == kShape;
+    if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
+    Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
+    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
+      if (problem.parameters[law].fixed) continue;
+      finding.parameters.push_back(problem.parameters.NameOf(law));
+    }
+    return finding;
+  }
+  return std::nullopt;
+}
+
 namespace {
 
 /// True if a record of two strokes ends where it began, in both channels: one closed cycle.
@@ -194,8 +180,8 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
   return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
 }
 
-}  // namespace
-
+/// Records that turn less than twice and do not start where the contact is unloaded: the branch
+/// that they start on began before them, and how far it has come is not known.
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds) {
   bool is_assumed = false;
@@ -221,43 +207,8 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
   return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
 }
 
-namespace {
-
-/// True if a contact that was unloaded at the bound of the search slides before its record begins:
-/// nothing depends on where beyond the bound it was.
-bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::size_t p,
-                        const Thresholds& thresholds) {
-  const Parameter& parameter = problem.parameters[p];
-  if (problem.data->is_forced() || parameter.term->id != OriginId(problem.data->excitation)) {
-    return false;
-  }
-  const double first = problem.data->records[parameter.record].displacement.front();
-  const double travel = std::abs(solution.theta[p] - first) * problem.data->length;
-  const models::BranchLaw law = problem.parameters.LawAt(solution.theta);
-  return models::BackboneForce(law, travel) >= (1 - thresholds.never_slips) * law.slip_force;
-}
-
-}  // namespace
-
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution,
-                                       const Thresholds& thresholds) {
-  for (const std::size_t p : problem.parameters.free()) {
-    const Parameter& parameter = problem.parameters[p];
-    const bool is_limit_of_law = parameter.term->positive || p == kShape;
-    if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
-    if (SlidesBeforeRecord(problem, solution, p, thresholds)) continue;
-    Finding finding{.code = "search_limit",
-                    .parameters = {problem.parameters.NameOf(p)},
-                    .numbers = {{"bound", parameter.ToValue(solution.theta[p])}}};
-    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
-      if (problem.parameters[law].fixed) continue;
-      finding.parameters.push_back(problem.parameters.NameOf(law));
-    }
-    return finding;
-  }
-  return std::nullopt;
-}
-
+/// An asymmetry of a contact that had been cycled before the records, and does not slip as a whole
+/// in every one of those whose force has a known zero.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
   const bool is_asked = asymmetry != nullptr && asymmetry->status != ParameterStatus::kFixed &&
@@ -277,6 +228,9 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
   return std::nullopt;
 }
 
+/// A force that stands at its largest or least reading, to the last digit, in a twentieth of the
+/// samples, though it has noise and no other reading repeats. That is the sensor's limit and not
+/// the contact's.
 std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
   constexpr double kOften = 0.05;  // of the samples
   constexpr double kLeast = 4;     // samples
@@ -303,6 +257,8 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
   return std::nullopt;
 }
 
+/// Samples that come back to the same few places of the loop in every cycle, however many they are:
+/// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
   std::size_t places = 0;
   std::size_t samples = 0;
@@ -332,23 +288,62 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
   }
   return Finding{.code = "not_identifiable",
                  .parameters = {"sigma", "alpha"},
-                 .numbers = {{"places", static_cast<double>(places)},
-                             {"samples", static_cast<double>(samples)}},
+                 .numbers = {{"places", static_cast<double>(places)}},
                  .kind = "few_places"};
+}
+
+/// Parameters whose prior lies far from what the records say without it; where these leave a
+/// parameter open, from what they say with it.
+std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
+                                             const Thresholds& thresholds) {
+  const Problem& problem = fitted.problem();
+  Finding finding{.code = "prior_contradicted"};
+  double farthest = 0.0;
+  for (const std::size_t p : problem.parameters.with_prior()) {
+    const Parameter& parameter = problem.parameters[p];
+    const double uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
+    // The fit includes the prior, whose variance is u²; its own error is e. So |θ − prior|/√(u² −
+    // e²) is the distance of the records' own estimate over the standard deviation of that
+    // distance.
+    const double left = uncertainty * uncertainty - std::pow(fitted.ErrorOfTheta(p), 2);
+    const double distance = std::abs(fitted.solution().theta[p] - parameter.prior_theta) /
+                            (left > 0 ? std::sqrt(left) : uncertainty);
+    if (!(distance > thresholds.prior_distance)) continue;
+    finding.parameters.push_back(problem.parameters.NameOf(p));
+    farthest = std::max(farthest, distance);
+  }
+  if (finding.parameters.empty()) return std::nullopt;
+  finding.numbers = {{"distance", farthest}};
+  return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
+                                      const FitOptions& options, const FitResult& result) {
+  const Problem& problem = fitted.problem();
+  const Thresholds& thresholds = options.thresholds;
+  std::vector<Finding> findings;
+  if (result.depth >= Depth::kIntervals) {
+    if (options.initial_states.empty()) {
+      Append(findings, FindUnknownPast(problem, fitted.solution(), thresholds));
+    }
+    Append(findings, FindFewPlaces(problem, thresholds));
+    if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records));
+  }
+  Append(findings, FindUntoldAsymmetry(result, thresholds));
+  Append(findings, FindContradictedPrior(fitted, thresholds));
+  Append(findings, FindOpenSlipForce(result));
+  return findings;
 }
 
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
   if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
   const bool is_better = choice->prefers_alternative();
-  Finding finding{.code = "other_law",
-                  .severity = is_better ? Severity::kWarning : Severity::kNote,
-                  .parameters = {"sigma", "slip_force"},
-                  .numbers = {{"sigma", choice->law.tangential_stiffness},
-                              {"alpha", choice->law.shape_exponent},
-                              {"slip_force", choice->law.slip_force}},
-                  .kind = is_better ? "better" : "undecided"};
-  if (choice->delta_aicc) finding.numbers.emplace_back("delta_aicc", *choice->delta_aicc);
-  return finding;
+  return Finding{.code = "other_law",
+                 .severity = is_better ? Severity::kWarning : Severity::kNote,
+                 .parameters = {"sigma", "slip_force"},
+                 .kind = is_better ? "better" : "undecided"};
 }
 
 }  // namespace mindahl::identification

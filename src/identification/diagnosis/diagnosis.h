@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "identification/inference/estimates.h"
@@ -17,6 +20,14 @@ namespace mindahl::identification {
 
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
+
+inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
+  if (finding) findings.push_back(std::move(*finding));
+}
+
+inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
+  std::ranges::move(more, std::back_inserter(findings));
+}
 
 /// Reversals that are not certain, and that no cycle is closed: whatever is fitted. Numbers of a
 /// record count from 1.
@@ -37,37 +48,19 @@ std::optional<Finding> FindUndetermined(const Estimates& fitted);
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 
-/// `prior_contradicted`: parameters whose prior lies far from what the records say without it;
-/// where these leave a parameter open, from what they say with it.
-std::optional<Finding> FindContradictedPrior(const Estimates& fitted, const Thresholds& thresholds);
-
 /// Closed intervals too wide to call a parameter known, of those that no other finding calls
 /// unknown.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
-/// Records that turn less than twice and do not start where the contact is unloaded: the branch
-/// that they start on began before them, and how far it has come is not known.
-std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
-                                       const Thresholds& thresholds);
-
-/// An asymmetry of a contact that had been cycled before the records, and does not slip as a whole
-/// in every one of those whose force has a known zero.
-std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
-
-/// `force_at_limit`: a force that stands at its largest or least reading, to the last digit, in a
-/// twentieth of the samples, though it has noise and no other reading repeats. That is the sensor's
-/// limit and not the contact's.
-std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records);
-
-/// Samples that come back to the same few places of the loop in every cycle, however many they are:
-/// what lies between them, the turning points too, no cycle shows.
-std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
-
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a
 /// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution,
-                                       const Thresholds& thresholds);
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution);
+
+/// Finds what else leaves a parameter open, or contradicts it: an unknown past, few places of the
+/// loop, a force at its sensor's limit, an asymmetry below slip, a prior, FindOpenSlipForce().
+std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
+                                      const FitOptions& options, const FitResult& result);
 
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);

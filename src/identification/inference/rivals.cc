@@ -63,8 +63,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
     const double exponent = sprung.problem.parameters.LoadExponentAt(solution.theta);
     if (estimate.name == "load_exponent") Include(estimate, {exponent, exponent});
   }
-  return Finding{.code = "shape_or_rig",
-                 .numbers = {{"rig_stiffness", rig.stiffness}, {"alpha", shape.value}}};
+  return Finding{.code = "shape_or_rig", .numbers = {{"rig_stiffness", rig.stiffness}}};
 }
 
 }  // namespace mindahl::identification
