@@ -9,7 +9,6 @@
 #include "identification/diagnosis/residuals.h"
 #include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
@@ -138,32 +137,28 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_states = {InitialState::kVirgin};
   }
-  FitResult other;
-  try {
-    other = Fitter(others).Fit(records, Depth::kEstimate);
-  } catch (const InvalidArgument&) {
-    return choice;  // too few samples for it
-  }
+  const std::optional<FitResult> other = FitWithout({}, records, others);
   // At a bound of α, σ or Tc the law turns into another one.
-  const bool is_at_bound = std::ranges::any_of(
-      std::array{"sigma", "alpha", "slip_force"},
-      [&](const char* name) { return other.converged && other.Find(name)->is_at_bound(); });
-  if (!other.converged || is_at_bound) {
+  const bool is_at_bound = other && std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"},
+                                                        [&](const char* name) {
+                                                          return other->Find(name)->is_at_bound();
+                                                        });
+  if (!other || is_at_bound) {
     choice.decided = !is_one_curve;
     if (choice.decided) choice.preferred = fit.model;
     return choice;
   }
-  const FitResult& better = other.likelihood_rms < fit.likelihood_rms ? other : fit;
+  const FitResult& better = other->likelihood_rms < fit.likelihood_rms ? *other : fit;
   const Evidence evidence(data.counted, IndependentSamples(data, better, options.thresholds));
   const auto criterion = [&](const FitResult& of) {
     const double rms = of.likelihood_rms / data.response_unit();
     return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());
   };
-  double delta = criterion(other) - criterion(fit);
+  double delta = criterion(*other) - criterion(fit);
   // If the laws are one curve, a virgin start counts only if it is better.
   const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
-  choice.law = other.law;
+  choice.law = other->law;
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
   // need turns that are not recorded. That alone does not decide for it.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
