@@ -65,7 +65,7 @@ TEST(Reweighting, ForceNoiseWithDisplacementNoiseCountsDegreesOfFreedom) {
   const double plain = std::sqrt(solution.sum_of_squares / degrees);
   EXPECT_NEAR(noise.force / plain, 1.0, 1e-3);
   EXPECT_NEAR(noise.variance / (plain * plain), 1.0, 2e-3);
-  ASSERT_EQ(noise.force_share.size(), record.size());
+  ASSERT_EQ(noise.force_share.size(), std::ssize(record.force));
   for (const double share : noise.force_share) EXPECT_NEAR(share, 1.0, 1e-3);
 }
 

@@ -159,8 +159,7 @@ Eigen::MatrixXd Noise::Product(std::span<const ScaledRecord> records,
     const Eigen::MatrixXd moved = jacobian.transpose() * drawn;
     product =
         moved * moved.transpose() / (static_cast<double>(drawn.cols()) * (variance * repeating));
-    const Eigen::Map<const Eigen::VectorXd> share(force_share.data(), jacobian.rows());
-    of_force = share.asDiagonal() * jacobian;
+    of_force = force_share.asDiagonal() * jacobian;
   }
   Eigen::Index begin = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {

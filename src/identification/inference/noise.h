@@ -49,11 +49,11 @@ struct Noise {
   double force = 0.0;              // standard deviation of the force's own, of all records
   std::vector<double> of_records;  // variances over that of all; empty of one, and where known
   Autocorrelation autocorrelation;
-  double repeating = 1.0;           // by how much a repeatable residual widens a variance
-  std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
-  Eigen::MatrixXd drawn;            // weighted residuals that errors of δ make, a column a draw
-  std::size_t outliers = 0;         // samples at less than half their weight
-  std::size_t samples = 0;          // that count
+  double repeating = 1.0;       // by how much a repeatable residual widens a variance
+  Eigen::VectorXd force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
+  Eigen::MatrixXd drawn;        // weighted residuals that errors of δ make, a column a draw
+  std::size_t outliers = 0;     // samples at less than half their weight
+  std::size_t samples = 0;      // that count
 
   /// Returns the effective sample size, at least 1: n/(1 + 2Σρ²) for autocorrelated residuals, and
   /// one stroke's samples for what repeats in every stroke.

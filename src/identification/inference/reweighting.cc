@@ -78,9 +78,7 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
   return noise;
 }
 
-double Rms(const Eigen::VectorXd& values) {
-  return values.norm() / std::sqrt(static_cast<double>(values.size()));
-}
+double Rms(const Eigen::ArrayXd& values) { return std::sqrt(values.square().mean()); }
 
 /// Fits of one problem, and the weights that each implies for the next.
 class Reweighting {
@@ -93,12 +91,12 @@ class Reweighting {
         drawn_(drawn),
         solver_(solver),
         solution_(solution),
-        force_(static_cast<Eigen::Index>(problem.size())),
-        from_displacement_(Eigen::VectorXd::Zero(force_.size())) {
-    for (const ScaledRecord& record : data.records) {
-      counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
-    }
-    degrees_ = DegreesOfFreedom(data, problem.parameters.free().size());
+        counts_(static_cast<Eigen::Index>(problem.size())),
+        force_(counts_.size()),
+        from_displacement_(Eigen::ArrayXd::Zero(counts_.size())),
+        degrees_(DegreesOfFreedom(data, problem.parameters.free().size())) {
+    auto to = counts_.begin();
+    for (const ScaledRecord& record : data.records) to = std::ranges::copy(record.counts, to).out;
     PredictForce();
   }
 
@@ -107,9 +105,9 @@ class Reweighting {
   bool Settle(Loss loss) {
     constexpr double kTurnsBack = 0.5;
     double change = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(force_.size());
+    Eigen::ArrayXd step = Eigen::ArrayXd::Zero(force_.size());
     for (int round = 0; round < kMostRounds; ++round) {
-      SetWeights(WeightsByNoise(loss));
+      WeighByNoise(loss);
       if (loss != Loss::kNone) {
         SolveByCeres(problem_, loss, unit_, SolverOptionsOf(options_), solution_);
       } else {
@@ -117,11 +115,11 @@ class Reweighting {
         solver_.Bind(problem_);
         solver_.Solve(start, SolverOptionsOf(options_), solution_);
       }
-      const Eigen::VectorXd last_force = force_;
+      const Eigen::ArrayXd last_force = force_;
       PredictForce();
-      const Eigen::VectorXd last_step = std::exchange(step, force_ - last_force);
+      const Eigen::ArrayXd last_step = std::exchange(step, force_ - last_force);
       // Weights and forces that chase each other meet half way.
-      if (step.dot(last_step) < -kTurnsBack * last_step.squaredNorm()) fraction_ /= 2;
+      if ((step * last_step).sum() < -kTurnsBack * last_step.square().sum()) fraction_ /= 2;
       const double last_change = std::exchange(change, Rms(step));
       // Changes that become less do so by the same factor.
       const bool is_predicted = round > 0 && change < last_change && solution_.converged;
@@ -134,25 +132,24 @@ class Reweighting {
   /// Puts the weights ψ(z)/z of a robust loss, of what it leaves, into those of the samples.
   /// @returns false where all samples are so far out that the loss has no minimum
   bool ApplyLoss(Loss loss) {
-    std::vector<double> weights = WeightsByNoise(loss);
-    const std::vector<double> residual = Residual();
+    WeighByNoise(loss);
+    const Eigen::ArrayXd standardised = weights_ * Residual() / unit_;
+    Eigen::ArrayXd of_samples = Eigen::ArrayXd::Zero(counts_.size());
     const std::unique_ptr<ceres::LossFunction> function = LossOf(loss);
     double influence_squares = 0.0;
     double slopes = 0.0;
-    double of_loss = 0.0;
-    noise_.outliers = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (Eigen::Index i = 0; i < counts_.size(); ++i) {
       if (counts_[i] == 0) continue;
-      const double z = weights[i] * residual[i] / unit_;
+      const double z = standardised[i];
       std::array<double, 3> rho{};  // and its derivatives by z²
       function->Evaluate(z * z, rho.data());
       if (rho[1] < 0.5) ++noise_.outliers;
       influence_squares += rho[1] * rho[1] * z * z;
       slopes += rho[1] + 2 * z * z * rho[2];  // ψ'(z)
-      of_loss += rho[1];
-      weights[i] *= std::sqrt(rho[1]);
+      of_samples[i] = rho[1];
     }
-    SetWeights(weights);
+    SetWeights(weights_ * of_samples.sqrt());
+    const double of_loss = of_samples.sum();
     if (!(slopes > 0 && of_loss > 0)) return false;
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
     // weight.
@@ -172,13 +169,7 @@ class Reweighting {
     solution_.sum_of_squares = problem_.parameters.PriorCost(solution_.theta);
     for (const double r : residual) solution_.sum_of_squares += r * r;
     solution_.report.final_cost = solution_.sum_of_squares / 2;
-    noise_.drawn = std::move(errors_);
-    Eigen::Index row = 0;
-    for (const ScaledRecord& record : data_.records) {
-      for (const double weight : record.root_weight) {
-        if (noise_.drawn.size() > 0) noise_.drawn.row(row++) *= weight;
-      }
-    }
+    if (drawn_ != nullptr) noise_.drawn = weights_.matrix().asDiagonal() * errors_;
     return std::move(noise_);
   }
 
@@ -190,68 +181,52 @@ class Reweighting {
   }
 
   /// Returns model − measured of every sample, without weights.
-  [[nodiscard]] std::vector<double> Residual() const {
-    std::vector<double> residual(force_.begin(), force_.end());
-    TakeOffMeasured(data_, residual);
+  [[nodiscard]] Eigen::ArrayXd Residual() const {
+    Eigen::ArrayXd residual = force_;
+    TakeOffMeasured(data_, {residual.data(), problem_.size()});
     return residual;
   }
 
   /// Finds the noise, and the root weights of the samples by it: weighted residuals have the
   /// deviation `unit_` of those where the loop is flattest.
-  std::vector<double> WeightsByNoise(Loss loss) {
+  void WeighByNoise(Loss loss) {
     // The draws of the last time hold where the forces have moved by next to nothing since.
     if (drawn_ != nullptr &&
         (drawn_at_.size() == 0 || !(Rms(force_ - drawn_at_) < kHarmless * unit_))) {
       errors_ = ForceErrors(*drawn_, problem_, solution_.theta);
       from_displacement_ +=
-          fraction_ * (errors_.rowwise().squaredNorm() / static_cast<double>(errors_.cols()) -
-                       from_displacement_);
+          fraction_ * (errors_.array().square().rowwise().mean() - from_displacement_);
       drawn_at_ = force_;
     }
     noise_ = PlainNoise(data_, options_, 0.0, 0);
     if (!noise_.is_known) noise_.force = ForceNoise(loss);
     const double of_force = std::max(noise_.force, kRoundingRms);
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      if (counts_[i] != 0)
-        least = std::min(least, from_displacement_[static_cast<Eigen::Index>(i)]);
-    }
-    unit_ = std::sqrt(of_force * of_force + least);
+    const Eigen::ArrayXd deviation = (of_force * of_force + from_displacement_).sqrt();
+    unit_ = (counts_ > 0).select(deviation, std::numeric_limits<double>::infinity()).minCoeff();
     noise_.variance = unit_ * unit_;
-    std::vector<double> weights(counts_.size());
-    if (drawn_ != nullptr) noise_.force_share.resize(counts_.size());
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
-      const double deviation =
-          std::sqrt(of_force * of_force + from_displacement_[static_cast<Eigen::Index>(i)]);
-      if (counts_[i] != 0) weights[i] = unit_ / deviation;
-      if (drawn_ != nullptr) noise_.force_share[i] = of_force / deviation;
-    }
-    return weights;
+    if (drawn_ != nullptr) noise_.force_share = of_force / deviation;
+    SetWeights(counts_ * unit_ / deviation);
   }
 
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
   /// displacement determine it. Where outliers are expected, that for which the standardised
   /// residuals have the median of normal ones.
   [[nodiscard]] double ForceNoise(Loss loss) const {
-    const std::vector<double> residual = Residual();
+    const Eigen::ArrayXd residual = Residual();
     const double samples_a_degree = static_cast<double>(data_.counted) / degrees_;
     const auto excess = [&](double variance) {
-      std::vector<double> standardised;  // for the median
-      double squares = 0.0;
-      double precisions = 0.0;
-      for (std::size_t i = 0; i < residual.size(); ++i) {
-        if (counts_[i] == 0) continue;
-        const double precision = 1 / (variance + from_displacement_[static_cast<Eigen::Index>(i)]);
-        squares += residual[i] * residual[i] * (precision * precision);
-        precisions += precision;
-        if (loss != Loss::kNone) standardised.push_back(residual[i] * std::sqrt(precision));
+      const Eigen::ArrayXd precision = counts_ / (variance + from_displacement_);
+      if (loss == Loss::kNone) {
+        return samples_a_degree * (residual * precision).square().sum() / precision.sum() - 1;
       }
-      if (loss != Loss::kNone) return RobustScale(std::move(standardised)) - 1;
-      return samples_a_degree * squares / precisions - 1;
+      std::vector<double> standardised;
+      for (Eigen::Index i = 0; i < residual.size(); ++i) {
+        if (counts_[i] > 0) standardised.push_back(residual[i] * std::sqrt(precision[i]));
+      }
+      return RobustScale(std::move(standardised)) - 1;
     };
     const double low = kRoundingRms * kRoundingRms;
-    double high = low;
-    for (const double r : residual) high = std::max(high, 2 * r * r);
+    const double high = std::max(low, 2 * residual.square().maxCoeff());
     const double at_low = excess(low);
     const double at_high = excess(high);
     if (!(at_low > 0)) return std::sqrt(low);
@@ -264,10 +239,12 @@ class Reweighting {
     return std::exp((from + to) / 4);
   }
 
-  void SetWeights(std::span<const double> weights) {
+  void SetWeights(Eigen::ArrayXd weights) {
+    weights_ = std::move(weights);
+    auto from = weights_.begin();
     for (ScaledRecord& record : data_.records) {
-      std::ranges::copy(weights.first(record.size()), record.root_weight.begin());
-      weights = weights.subspan(record.size());
+      from =
+          std::ranges::copy_n(from, std::ssize(record.root_weight), record.root_weight.begin()).in;
     }
   }
 
@@ -277,14 +254,15 @@ class Reweighting {
   const loop::DrawnReadings* drawn_;
   Solver& solver_;
   Solution& solution_;
-  std::vector<unsigned char> counts_;
-  Eigen::VectorXd force_;              // of the solution
-  Eigen::VectorXd from_displacement_;  // variance σ_T² of the draws at every sample
-  double fraction_ = 1.0;              // of new draws in it
-  Eigen::MatrixXd errors_;             // of the last draws
-  Eigen::VectorXd drawn_at_;           // forces
-  double unit_ = 0.0;                  // deviation of the weighted residuals
-  double degrees_ = 1.0;
+  Eigen::ArrayXd counts_;             // 1 of a sample that counts, else 0
+  Eigen::ArrayXd force_;              // of the solution
+  Eigen::ArrayXd from_displacement_;  // variance σ_T² of the draws at every sample
+  double fraction_ = 1.0;             // of new draws in it
+  Eigen::MatrixXd errors_;            // of the last draws
+  Eigen::ArrayXd drawn_at_;           // forces
+  double unit_ = 0.0;                 // deviation of the weighted residuals
+  double degrees_;
+  Eigen::ArrayXd weights_;  // roots
   Noise noise_;
 };
 
