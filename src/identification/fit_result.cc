@@ -95,7 +95,7 @@ double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) 
   if (!has_error || !end || (is_positive && !(*end > 0))) return kOpen;
   const double way = is_positive ? estimate.value * std::abs(std::log(*end / estimate.value))
                                  : std::abs(*end - estimate.value);
-  const double error = way / StudentQuantile(ErrorDegreesOfFreedom(), confidence);
+  const double error = way / StudentQuantile(degrees_of_freedom, confidence);
   // The standard error itself where the interval is that of the parabola, but for rounding.
   constexpr double kRounding = 1e-9;
   const double standard = estimate.standard_error.value_or(0.0);

@@ -52,10 +52,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
   if (!LeavesOnlyRounding(problem, solution)) noise.repeating = widening;
   result.residuals = DescribeResiduals(result.records);
   result.residuals.effective_samples = noise.effective_samples();
-  const std::size_t free = problem.parameters.free().size();
-  result.residuals.degrees_of_freedom =
-      std::max(noise.effective_samples() - static_cast<double>(free), 1.0);
-  result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
+  result.degrees_of_freedom = noise.degrees_of_freedom(problem.parameters.free().size());
 }
 
 /// Adequacy, and intervals that cover what its causes would change.

@@ -94,7 +94,7 @@ double StandardizedDistance(const Record& record, const models::BranchLaw& truth
                    {"slip_force", truth.slip_force}};
   const FitResult at_truth = Fit({&record, 1}, options, Depth::kEstimate);
   const double ratio = at_truth.rms / fit.rms;
-  return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
+  return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.degrees_of_freedom);
 }
 
 /// Compares a fit with the truth and adds it to its row.

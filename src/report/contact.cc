@@ -186,7 +186,7 @@ AlphaTest TestAlpha(const FitResult& fit) {
   test.is_rejected = ExcludesAThird(alpha);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {
-    test.p_value = PValueOfT(*test.minus_third / error, fit.ErrorDegreesOfFreedom());
+    test.p_value = PValueOfT(*test.minus_third / error, fit.degrees_of_freedom);
   }
   return test;
 }

@@ -60,7 +60,7 @@ TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
   const auto degrees = static_cast<double>(record.size() - free.size());
   const double variance = residual.squaredNorm() / degrees;
   EXPECT_NEAR(fit.force_noise, std::sqrt(variance) * stages.data.force, 1e-9 * fit.force_noise);
-  EXPECT_EQ(fit.residuals.degrees_of_freedom, degrees);
+  EXPECT_EQ(fit.degrees_of_freedom, degrees);
   const Eigen::MatrixXd covariance =
       variance * SandwichOf(stages.DifferencesAt(theta), 0.0).covariance;
   for (std::size_t j = 0; j < free.size(); ++j) {
@@ -200,7 +200,7 @@ FitResult FitWith(double confidence, const loop::Record& record, Depth depth) {
 TEST(Confidence, IntervalsAreInProportionToStudentsQuantile) {
   const loop::Record record = NoisyLoop(1);
   const FitResult usual = FitWith(0.95, record, Depth::kErrors);
-  const double degrees = usual.ErrorDegreesOfFreedom();
+  const double degrees = usual.degrees_of_freedom;
   for (const double confidence : {0.68, 0.99}) {
     const FitResult fit = FitWith(confidence, record, Depth::kErrors);
     EXPECT_EQ(fit.confidence, confidence);

@@ -28,7 +28,7 @@ void ExpectFinite(const FitResult& fit) {
   EXPECT_TRUE(std::isfinite(fit.residuals.rms));
   EXPECT_TRUE(std::isfinite(fit.residuals.durbin_watson));
   EXPECT_GE(fit.residuals.effective_samples, 1.0);
-  EXPECT_GE(fit.residuals.degrees_of_freedom, 1.0);
+  EXPECT_GE(fit.degrees_of_freedom, 1.0);
 }
 
 TEST(Noise, NinetyFivePercentIntervalsCoverAsOftenAsTheyState) {

@@ -71,7 +71,7 @@ inline identification::FitResult MadeFit(const std::vector<loop::Record>& record
   fit.correlation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   fit.adequacy.tried = 12;
   fit.residuals.samples = 9;
-  fit.residuals.degrees_of_freedom = 6;
+  fit.degrees_of_freedom = 6;
   for (const loop::Record& record : records)
     fit.records.push_back(MadeRecordFit(record, amplitude));
   return fit;

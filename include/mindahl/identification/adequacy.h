@@ -17,7 +17,6 @@ struct ResidualStatistics {
   /// Number of independent residuals of equal information: n/(1 + 2Σρ²), ρ the correlations of an
   /// autoregressive process (Bartlett 1946), over the strokes in which a fraction of them repeats
   double effective_samples = 0.0;
-  double degrees_of_freedom = 0.0;  ///< effective samples less the free parameters, at least 1
   std::size_t samples = 0;
 };
 

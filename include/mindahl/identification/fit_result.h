@@ -139,9 +139,9 @@ struct FitResult {
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
   ResidualStatistics residuals;
-  /// Degrees of freedom of Student's distribution of the errors: practically infinite where the
-  /// noise is known; empty stands for those of the residuals.
-  std::optional<double> error_degrees_of_freedom;
+  /// Degrees of freedom of Student's distribution of the errors: effective samples less free
+  /// parameters, at least 1; practically infinite where the noise is known.
+  double degrees_of_freedom = 0.0;
   Adequacy adequacy;  ///< from depth kIntervals on
   std::vector<RecordFit> records;
   std::vector<Finding> findings;
@@ -181,11 +181,6 @@ struct FitResult {
 
   /// Returns the number of parameters that are not held, for criteria.
   [[nodiscard]] std::size_t CountFreeParameters() const;
-
-  /// Degrees of freedom of Student's law of the errors.
-  [[nodiscard]] double ErrorDegreesOfFreedom() const {
-    return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
-  }
 
   /// Returns the error of a parameter [its unit] in whatever follows from it: the distance to the
   /// farther end of its interval, along the logarithm of a positive parameter, in units of the half

@@ -13,8 +13,8 @@ namespace mindahl::identification {
 /// Returns the strokes that are no shorter than `main_stroke` of the longest.
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
 
-/// Describes the residuals that count; differences are taken within a record. Effective samples and
-/// degrees of freedom, which need the noise, are left at 0.
+/// Describes the residuals that count; differences are taken within a record. Effective samples,
+/// which need the noise, are left at 0.
 ResidualStatistics DescribeResiduals(std::span<const RecordFit> records);
 
 /// Makes a one-way analysis of variance of a record's residuals over 20 parts of each main stroke.
