@@ -27,100 +27,73 @@ namespace {
 
 /// Fits in all, nearly all of them at Depth::kEstimate.
 constexpr std::size_t kMostFits = 15;
+constexpr std::size_t kLastFits = 3;  // of these, in a round and at the end
 
-/// Central differences; enough to recognise a measured velocity.
-std::vector<double> RoughVelocity(const RecordView& record) {
-  std::vector<double> velocity(record.size(), 0.0);
-  for (std::size_t i = 1; i + 1 < record.size() && !record.time.empty(); ++i) {
-    const double duration = record.time[i + 1] - record.time[i - 1];
-    if (duration > 0) {
-      velocity[i] = (record.displacement[i + 1] - record.displacement[i - 1]) / duration;
-    }
+/// A candidate of one selection.
+struct TermCandidate : ConsideredTerm {
+  TermChoice choice = {};
+  std::optional<TermScore> score = {};  // at the present solution; empty where it has no effect
+
+  /// True of a column that follows the force of the contact: its cause, or confounded with it.
+  [[nodiscard]] bool FollowsForce() const {
+    return !choice.covariate.empty() && obstacle == "confounded";
   }
-  return velocity;
-}
+  /// True of a term whose effect is not linear: a fit says what it gains, a score does not.
+  [[nodiscard]] bool MovesContact() const {
+    return !choice.terms.empty() &&
+           FindTerm(choice.terms.front())->motion != ContactMotion::kMeasured;
+  }
+};
 
-/// Names what keeps a column out: it repeats another one.
+/// Names what keeps a column out: it repeats another one, or follows the force, of which its factor
+/// would take a part.
 /// @param before  covariates that are candidates
-std::string_view ObstacleToColumn(const loop::Covariate& covariate, const RecordView& record,
+std::string_view ObstacleToColumn(const loop::Covariate& column, const RecordView& record,
                                   const FitResult& law, std::span<const std::string> before,
                                   const Thresholds& thresholds) {
-  const auto is_channel = [&](std::span<const double> other) {
-    return AreOneChannel(covariate.values, other);
+  const auto repeats = [&](std::span<const double> other) {
+    return !other.empty() && AreOneChannel(column.values, other);
   };
-  if (is_channel(record.displacement) || is_channel(record.force) ||
-      is_channel(record.time.empty() ? record.displacement : record.time) ||
-      is_channel(RoughVelocity(record))) {
+  const auto repeats_column = [&](const loop::Covariate& other) {
+    return std::ranges::find(before, other.name) != before.end() && repeats(other.values);
+  };
+  if (repeats(record.displacement) || repeats(record.force) || repeats(record.time) ||
+      std::ranges::any_of(record.covariates, repeats_column)) {
     return "same_channel";
   }
-  for (const loop::Covariate& other : record.covariates) {
-    const bool is_before = std::ranges::find(before, other.name) != before.end();
-    if (is_before && is_channel(other.values)) return "same_channel";
-  }
-  // The factor of a column that follows the force would take a part of Tc.
-  const double correlation = ColumnCorrelation(covariate.values, law.records.front().fitted_force);
+  const double correlation = ColumnCorrelation(column.values, law.records.front().fitted_force);
   return std::abs(correlation) > thresholds.follows_contact ? "confounded" : "";
 }
 
-bool HasCovariate(const RecordView& record, const std::string& name) {
-  return std::ranges::find(record.covariates, name, &loop::Covariate::name) !=
-         record.covariates.end();
-}
-
-bool IsConstant(std::span<const double> values) {
-  const auto [lowest, highest] = ExtremesOf(values);
-  return !(highest > lowest);
-}
-
-/// A candidate of one selection.
-struct TermCandidate {
-  ConsideredTerm considered;
-  TermChoice choice;
-};
-
-/// True of a column that follows the force of the contact: its cause, or what it is confounded
-/// with.
-bool FollowsForce(const TermCandidate& candidate) {
-  return !candidate.choice.covariate.empty() && candidate.considered.obstacle == "confounded";
-}
-
-/// True of a term whose effect is not linear: a fit says what it gains, a score does not.
-bool MovesContact(const TermCandidate& candidate) {
-  const std::vector<std::string>& terms = candidate.choice.terms;
-  return !terms.empty() && FindTerm(terms.front())->motion != ContactMotion::kMeasured;
-}
-
-TermCandidate CandidateOf(const TermGroup& group) {
-  TermCandidate candidate;
-  candidate.considered.name = group.name;
-  candidate.choice.terms.assign(group.terms.begin(), group.terms.end());
-  return candidate;
-}
-
-std::vector<TermCandidate> TermCandidates(std::span<const RecordView> records,
-                                          const FitOptions& options, const FitResult& law) {
+std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
+                                        const FitOptions& options, const FitResult& law) {
   std::vector<TermCandidate> candidates;
-  const auto is_timed = [](const RecordView& record) { return !record.time.empty(); };
-  const bool timed = std::ranges::all_of(records, is_timed);
+  const bool timed =
+      std::ranges::all_of(records, [](const RecordView& record) { return !record.time.empty(); });
   for (const TermGroup& group : TermGroups()) {
     const bool has_data = std::ranges::all_of(
         group.terms, [&](std::string_view name) { return timed || !FindTerm(name)->needs_time; });
-    if (group.is_tried && has_data) candidates.push_back(CandidateOf(group));
+    if (!group.is_tried || !has_data) continue;
+    TermCandidate& candidate = candidates.emplace_back();
+    candidate.name = group.name;
+    candidate.choice.terms.assign(group.terms.begin(), group.terms.end());
   }
   std::vector<std::string> columns = options.covariates;
-  for (const loop::Covariate& covariate : records.front().covariates) {
-    const bool is_there = std::ranges::find(columns, covariate.name) != columns.end();
-    const auto has_it = [&](const RecordView& record) {
-      return HasCovariate(record, covariate.name);
-    };
-    if (is_there || !std::ranges::all_of(records, has_it) || IsConstant(covariate.values)) continue;
+  for (const loop::Covariate& column : records.front().covariates) {
+    const bool is_there = std::ranges::find(columns, column.name) != columns.end();
+    const bool all_have_it = std::ranges::all_of(records, [&](const RecordView& record) {
+      return std::ranges::find(record.covariates, column.name, &loop::Covariate::name) !=
+             record.covariates.end();
+    });
+    const auto [lowest, highest] = ExtremesOf(column.values);
+    if (is_there || !all_have_it || !(highest > lowest)) continue;
     TermCandidate& candidate = candidates.emplace_back();
-    candidate.considered.name = NameOfCovariate(covariate.name);
-    candidate.considered.obstacle =
-        ObstacleToColumn(covariate, records.front(), law, columns, options.thresholds);
-    if (candidate.considered.obstacle == "same_channel") continue;  // reported, never fitted
-    columns.push_back(covariate.name);
-    candidate.choice.covariate = covariate.name;
+    candidate.name = NameOfCovariate(column.name);
+    candidate.obstacle =
+        ObstacleToColumn(column, records.front(), law, columns, options.thresholds);
+    if (candidate.obstacle == "same_channel") continue;  // reported, never fitted
+    columns.push_back(column.name);
+    candidate.choice.covariate = column.name;
   }
   return candidates;
 }
@@ -153,23 +126,19 @@ bool StopsAtLimit(const FitResult& fit) {
   });
 }
 
-bool IsPositiveTerm(std::string_view parameter) {
-  const Term* const term = TermOfParameter(parameter);
-  return term != nullptr && term->is_never_negative;
-}
-
+/// True of a mass or a damping below zero.
 bool IsUnphysical(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    return IsPositiveTerm(estimate.name) && estimate.status != ParameterStatus::kFixed &&
-           estimate.value < 0;
+    return TermOfParameter(estimate.name)->is_never_negative && estimate.value < 0 &&
+           estimate.status != ParameterStatus::kFixed;
   });
 }
 
 /// Holds the law that another candidate of a round gives in place of the one that was added.
 struct Alternative {
   std::string name;
-  std::map<std::string, double> law;  // differences of θ of σ, α and Tc
-  double rms = 0.0;                   // with it, to first order
+  std::array<double, 3> law{};  // differences of θ of σ, α and Tc
+  double rms = 0.0;             // with it, to first order
 };
 
 /// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
@@ -178,18 +147,18 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
                          FitResult& fit) {
   const RecordFit& widest = fit.WidestRecord();
   for (const Alternative& alternative : alternatives) {
-    for (const auto& [name, difference] : alternative.law) {
-      const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
-      if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
-      const double step = std::clamp(difference, -kFarthestStep, kFarthestStep);
-      double value = name == "alpha" ? std::max(0.0, estimate->value + step)
-                                     : estimate->value * std::exp(step);
-      if (name == "slip_force" && loop::Slides(widest.facts)) {
+    for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
+      ParameterEstimate& estimate = fit.parameters[p];
+      if (!estimate.lower95 || !estimate.upper95) continue;
+      const double step = std::clamp(alternative.law[p], -kFarthestStep, kFarthestStep);
+      double value =
+          p == kShape ? std::max(0.0, estimate.value + step) : estimate.value * std::exp(step);
+      if (p == kSlipForce && loop::Slides(widest.facts)) {
         value =
-            std::clamp(value, std::min(*widest.facts.half_gap / widest.load_ratio, estimate->value),
-                       std::max(widest.facts.peak_force / widest.load_ratio, estimate->value));
+            std::clamp(value, std::min(*widest.facts.half_gap / widest.load_ratio, estimate.value),
+                       std::max(widest.facts.peak_force / widest.load_ratio, estimate.value));
       }
-      Include(*estimate, {.lower = value, .upper = value});
+      Include(estimate, {.lower = value, .upper = value});
     }
   }
   Append(fit.findings, FindWideIntervals(fit, thresholds));
@@ -199,11 +168,11 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
 /// Adds terms to a law, one after the other.
 class Selection {
  public:
-  explicit Selection(std::span<const RecordView> records) : records_(records) {}
+  /// @param law  fit of the records with the options
+  Selection(std::span<const RecordView> records, const FitOptions& options, const FitResult& law);
 
-  TermSelection Run(const FitOptions& options);
-  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law,
-                                  std::size_t most);
+  TermSelection Run(FitResult law);
+  std::vector<std::string> Likely(std::size_t most);
 
  private:
   /// A model of the selection, fitted at Depth::kEstimate.
@@ -212,144 +181,107 @@ class Selection {
     FitResult fit;
   };
 
-  /// A candidate and its score.
-  struct Gain {
-    std::size_t candidate;
-    TermScore score;
-  };
-
-  bool Begin(const FitOptions& options, const FitResult& law);
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
-  [[nodiscard]] std::optional<std::size_t> Find(std::string_view name) const;
-  std::vector<Gain> Score();
-  [[nodiscard]] bool IsRefused(const Gain& gain);
-  [[nodiscard]] const Gain& Simplest(std::span<const Gain> gains) const;
-  Model FitWith(const TermChoice& choice, const std::map<std::string, double>* starts);
+  [[nodiscard]] bool MayFit() const { return fits_ + kLastFits < kMostFits; }
+  std::vector<TermCandidate*> Score();
+  [[nodiscard]] bool IsRefused(TermCandidate& candidate) const;
+  [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
+  Model FitWith(const TermChoice& choice, bool from_here = true);
   FitResult FitTo(FitOptions options, Depth depth);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] bool Gains(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
-  bool Add(std::size_t candidate, Model model);
+  bool Add(TermCandidate& candidate, Model model);
   bool Round();
   bool Move();
-  void KeepAlternatives(const Gain& added, std::span<const Gain> gains);
-  void FitLast(const FitResult& law);
+  void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others);
+  FitResult FitLast(const FitResult& law);
 
-  static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
   std::span<const RecordView> records_;
-  TermSelection result_;
-  std::size_t fits_ = 0;  // that were made
-  std::vector<TermCandidate> candidates_;
-  Model base_;  // with the terms that were added
-  std::optional<TermScores> scores_;
-  std::vector<Alternative> alternatives_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
+  std::size_t fits_ = 1;                              // that were made
+  std::vector<TermCandidate> candidates_;
+  Model base_;                      // with the terms that were added
+  std::vector<std::string> added_;  // names of these candidates
+  std::vector<Alternative> alternatives_;
 };
 
-std::optional<std::size_t> Selection::Find(std::string_view name) const {
-  const auto found = std::ranges::find(candidates_, name, [](const TermCandidate& candidate) {
-    return std::string_view(candidate.considered.name);
-  });
-  if (found == candidates_.end()) return std::nullopt;
-  return found - candidates_.begin();
-}
-
-/// Prepares the records for all candidates at once.
-/// @returns false where the law has no fit
-bool Selection::Begin(const FitOptions& options, const FitResult& law) {
-  candidates_ = TermCandidates(records_, options, law);
-  std::vector<TermChoice> choices;
-  choices.reserve(candidates_.size());
-  for (const TermCandidate& candidate : candidates_) choices.push_back(candidate.choice);
-  FitOptions as_fitted = options;
-  as_fitted.preparation.force_sense = law.force_sense;
-  try {
-    scores_.emplace(records_, as_fitted, choices);
-  } catch (const InvalidArgument&) {
-    const auto lag = Find("lag");  // no time that goes on
-    if (!lag) throw;
-    candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*lag));
-    choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(*lag));
-    scores_.emplace(records_, as_fitted, choices);
-  }
-  drawn_ = loop::DrawReadings(scores_->prepared());
-  facts_ = law.WidestRecord().facts;
-  base_ = {.options = options, .fit = law};
+Selection::Selection(std::span<const RecordView> records, const FitOptions& options,
+                     const FitResult& law)
+    : records_(records),
+      drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
+      facts_(law.WidestRecord().facts),
+      candidates_(CandidatesOf(records, options, law)),
+      base_{.options = options, .fit = law} {
   // The law is fitted again as the candidates are, without an upper bound on the slip force: a
   // missing term may drive it beyond the measured force.
-  const std::map<std::string, double> none;
-  base_ = FitWith({}, &none);
-  return IsFitted(base_.fit) && base_.fit.converged;
+  base_ = FitWith({});
 }
 
-/// Scores the candidates at the present solution and returns them, the best first.
-std::vector<Selection::Gain> Selection::Score() {
+/// Scores the candidates at the present solution and returns those that have an effect, the best
+/// first.
+std::vector<TermCandidate*> Selection::Score() {
+  if (!IsFitted(base_.fit) || !base_.fit.converged) return {};
   std::vector<TermChoice> choices;
   for (TermCandidate& candidate : candidates_) {
     std::erase_if(candidate.choice.terms,
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
-    choices.push_back(candidate.considered.added ? TermChoice() : candidate.choice);
+    choices.push_back(candidate.added ? TermChoice() : candidate.choice);
   }
-  scores_->StepFrom(base_.fit, base_.options, choices);
-  std::vector<Gain> gains;
+  FitOptions as_fitted = base_.options;
+  as_fitted.preparation.force_sense = base_.fit.force_sense;
+  const auto scores = ScoreTerms(records_, base_.fit, as_fitted, choices);
+  std::vector<TermCandidate*> scored;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    ConsideredTerm& considered = candidates_[c].considered;
-    if (considered.added) continue;
-    const bool stays = considered.obstacle == "confounded" || considered.obstacle == "same_channel";
-    if (!stays) considered.obstacle = "";
-    std::optional<TermScore> score = scores_->Of(c);
-    considered.gain = score ? score->gain : 0.0;
-    if (score) gains.push_back({c, std::move(*score)});
+    TermCandidate& candidate = candidates_[c];
+    if (candidate.added) continue;
+    const bool stays = candidate.obstacle == "confounded" || candidate.obstacle == "same_channel";
+    if (!stays) candidate.obstacle = "";
+    candidate.score = scores[c];
+    candidate.gain = candidate.score ? candidate.score->gain : 0.0;
+    if (candidate.score) scored.push_back(&candidate);
   }
-  std::ranges::stable_sort(gains, std::greater(), [](const Gain& one) { return one.score.gain; });
-  return gains;
+  std::ranges::stable_sort(scored, std::greater(), &TermCandidate::gain);
+  return scored;
 }
 
 /// True if a candidate that gains is not to be added, and says why where that is to be reported.
-bool Selection::IsRefused(const Gain& gain) {
-  TermCandidate& candidate = candidates_[gain.candidate];
+bool Selection::IsRefused(TermCandidate& candidate) const {
   // Beside a slip force of the speed a further force of speed and the slip force at rest are
   // confounded; a drag is that force with the slip force that at v₀.
-  if (candidate.considered.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
-  if (std::ranges::any_of(gain.score.values, [](const auto& value) {
-        return IsPositiveTerm(value.first) && value.second < 0;
-      })) {
-    candidate.considered.obstacle = "unphysical";
-  }
-  return !candidate.considered.obstacle.empty();
+  if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
+  if (candidate.score->is_negative) candidate.obstacle = "unphysical";
+  return !candidate.obstacle.empty();
 }
 
 /// Returns the best, or what has some of its terms only and gains at least half as much.
-const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
-  const Gain& most = gains.front();
-  const Gain* best = &most;
-  for (const Gain& one : gains) {
-    const TermChoice& choice = candidates_[one.candidate].choice;
-    const std::vector<std::string>& all = candidates_[most.candidate].choice.terms;
-    const bool is_part =
-        choice.covariate.empty() && std::ranges::all_of(choice.terms, [&](const std::string& term) {
-          return std::ranges::find(all, term) != all.end();
-        });
-    const bool is_smaller = one.score.values.size() < best->score.values.size();
-    if (is_part && is_smaller && one.score.gain >= Limits().rival * most.score.gain) best = &one;
+TermCandidate& Selection::Simplest(std::span<TermCandidate* const> candidates) const {
+  const TermCandidate& most = *candidates.front();
+  TermCandidate* best = candidates.front();
+  for (TermCandidate* const one : candidates) {
+    const bool is_part = one->choice.covariate.empty() &&
+                         std::ranges::all_of(one->choice.terms, [&](const std::string& term) {
+                           const std::vector<std::string>& all = most.choice.terms;
+                           return std::ranges::find(all, term) != all.end();
+                         });
+    const bool is_smaller = one->score->parameters < best->score->parameters;
+    if (is_part && is_smaller && one->gain >= Limits().rival * most.gain) best = one;
   }
   return *best;
 }
 
 /// Fits the present model with some more terms.
-/// @param starts  of these, beside its solution; null: from starts of its own
-Selection::Model Selection::FitWith(const TermChoice& choice,
-                                    const std::map<std::string, double>* starts) {
+/// @param from_here  from its solution, else from starts of its own
+Selection::Model Selection::FitWith(const TermChoice& choice, bool from_here) {
   Model model{.options = choice.AddedTo(base_.options), .fit = {}};
   FitOptions options = model.options;
-  if (starts != nullptr) {
+  if (from_here) {
     HoldInitialStates(base_.fit, options);
     StartFrom(base_.fit, options);
-    for (const auto& [name, value] : *starts) options.start[name] = value;
   }
   options.preparation.force_sense = base_.fit.force_sense;
-  model.fit = FitTo(options, Depth::kEstimate);
+  model.fit = FitTo(std::move(options), Depth::kEstimate);
   return model;
 }
 
@@ -387,54 +319,50 @@ std::string_view Selection::ObstacleTo(const Model& model) const {
 }
 
 /// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate keeps.
-bool Selection::Add(std::size_t candidate, Model model) {
-  ConsideredTerm& considered = candidates_[candidate].considered;
-  considered.obstacle = ObstacleTo(model);
-  if (!considered.obstacle.empty()) return false;
-  considered.added = true;
-  result_.added.push_back(considered.name);
+bool Selection::Add(TermCandidate& candidate, Model model) {
+  candidate.obstacle = ObstacleTo(model);
+  if (!candidate.obstacle.empty()) return false;
+  candidate.added = true;
+  added_.push_back(candidate.name);
   base_ = std::move(model);
   return true;
 }
 
 /// Keeps what candidates that gain at least half as much as the one that is added would make of the
 /// law: the record may have been made by them.
-void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains) {
-  for (const auto& [c, score] : gains) {
-    const bool is_column = !candidates_[c].choice.covariate.empty();
-    if (candidates_[c].considered.obstacle == "unphysical") continue;
-    if (is_column || score.gain < Limits().rival * added.score.gain) continue;
+void Selection::KeepAlternatives(const TermCandidate& added,
+                                 std::span<TermCandidate* const> others) {
+  for (const TermCandidate* const other : others) {
+    const bool is_column = !other->choice.covariate.empty();
+    if (is_column || other->score->is_negative || other->gain < Limits().rival * added.gain)
+      continue;
     Alternative& alternative =
-        alternatives_.emplace_back(Alternative{candidates_[c].considered.name, {}, score.rms});
-    for (const auto& [name, step] : score.law) {
-      const auto of_added = added.score.law.find(name);
-      if (of_added != added.score.law.end()) alternative.law[name] = step - of_added->second;
-    }
+        alternatives_.emplace_back(Alternative{.name = other->name, .rms = other->score->rms});
+    std::ranges::transform(other->score->law, added.score->law, alternative.law.begin(),
+                           std::minus());
   }
 }
 
 /// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
-  std::vector<Gain> gains = Score();
+  std::vector<TermCandidate*> explaining = Score();
   const double chance =
-      Limits().added_by_chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
-  std::erase_if(gains, [&](const Gain& gain) {
-    return gain.score.gain < Limits().worthwhile_gain || !(gain.score.p_value < chance);
+      Limits().added_by_chance / static_cast<double>(std::max<std::size_t>(explaining.size(), 1));
+  std::erase_if(explaining, [&](const TermCandidate* candidate) {
+    return candidate->gain < Limits().worthwhile_gain || !(candidate->score->p_value < chance);
   });
+  std::vector<TermCandidate*> left = explaining;
+  std::erase_if(left, [&](TermCandidate* candidate) { return IsRefused(*candidate); });
   constexpr double kMost = 0.5;
-  const std::vector<Gain> explaining = gains;
-  std::erase_if(gains, [&](const Gain& gain) { return IsRefused(gain); });
-  while (!gains.empty() && fits_ + kLastFits < kMostFits) {
-    const Gain& best = Simplest(gains);
-    const std::size_t candidate = best.candidate;
-    const TermChoice& choice = candidates_[candidate].choice;
+  while (!left.empty() && MayFit()) {
+    TermCandidate& best = Simplest(left);
     // A search from a solution that most of the misfit has led astray may end elsewhere.
-    if (Add(candidate, FitWith(choice, &best.score.values)) ||
-        (best.score.gain > kMost && Add(candidate, FitWith(choice, nullptr)))) {
+    if (Add(best, FitWith(best.choice)) ||
+        (best.gain > kMost && Add(best, FitWith(best.choice, /*from_here=*/false)))) {
       KeepAlternatives(best, explaining);
       return true;
     }
-    std::erase_if(gains, [&](const Gain& gain) { return gain.candidate == candidate; });
+    std::erase(left, &best);
   }
   return false;
 }
@@ -442,104 +370,92 @@ bool Selection::Round() {
 /// Adds the better of the terms that move the contact, where no other can be added.
 bool Selection::Move() {
   if (IsNearlyWhite(base_.fit, Limits())) return false;
-  std::optional<std::pair<std::size_t, Model>> best;
-  for (const Gain& gain : Score()) {
-    const TermCandidate& candidate = candidates_[gain.candidate];
-    if (!MovesContact(candidate) || fits_ + kLastFits >= kMostFits) continue;
-    Model model = FitWith(candidate.choice, &gain.score.values);
-    if (!ObstacleTo(model).empty()) continue;
-    if (!best || model.fit.rms < best->second.fit.rms) best = {gain.candidate, std::move(model)};
+  TermCandidate* best = nullptr;
+  Model of_best;
+  for (TermCandidate* const candidate : Score()) {
+    if (!candidate->MovesContact() || !MayFit()) continue;
+    Model model = FitWith(candidate->choice);
+    if (!ObstacleTo(model).empty() || (best != nullptr && model.fit.rms >= of_best.fit.rms)) {
+      continue;
+    }
+    best = candidate;
+    of_best = std::move(model);
   }
-  return best && Add(best->first, std::move(best->second));
-}
-
-TermSelection Selection::Run(const FitOptions& options) {
-  ++fits_;
-  result_.options = options;
-  result_.fit = Fitter(options).Fit(records_, Depth::kFull);
-  const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
-  if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) {
-    return std::move(result_);
-  }
-  const FitResult law = result_.fit;
-  if (!Begin(options, law)) return std::move(result_);
-  while (Round() || Move()) {
-  }
-  if (!result_.added.empty()) FitLast(law);
-  for (const TermCandidate& candidate : candidates_) {
-    result_.considered.push_back(candidate.considered);
-  }
-  std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
-  std::ranges::stable_sort(result_.considered, {}, [&](const ConsideredTerm& term) {
-    return std::ranges::find(result_.added, term.name) - result_.added.begin();
-  });
-  return std::move(result_);
+  return best != nullptr && Add(*best, std::move(of_best));
 }
 
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
-/// Tc or leave more than is known to be left, else from where it is. The law stays where its Tc
-/// would be lost.
-void Selection::FitLast(const FitResult& law) {
-  FitResult last = FitTo(base_.options, Depth::kFull);
-  const double most_left = (1 + Limits().worthwhile_gain) * base_.fit.rms;
+/// Tc or leave more than is known to be left, else from where it is.
+/// @returns a fit without parameters where Tc is lost
+FitResult Selection::FitLast(const FitResult& law) {
   const auto is_kept = [&](const FitResult& fit) {
     return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
   };
-  if (!is_kept(last) || last.rms > most_left) {
+  FitResult last = FitTo(base_.options, Depth::kFull);
+  if (!is_kept(last) || last.rms > (1 + Limits().worthwhile_gain) * base_.fit.rms) {
     FitOptions from_here = base_.options;
     StartFrom(base_.fit, from_here);
-    last = FitTo(from_here, Depth::kFull);
+    last = FitTo(std::move(from_here), Depth::kFull);
   }
-  if (is_kept(last)) {
+  return is_kept(last) ? last : FitResult();
+}
+
+TermSelection Selection::Run(FitResult law) {
+  TermSelection result;
+  result.options = base_.options;
+  while (Round() || Move()) {
+  }
+  FitResult last = added_.empty() ? FitResult() : FitLast(law);
+  if (IsFitted(last)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
-        result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
+        added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
     std::erase_if(alternatives_, [&](const Alternative& alternative) {
-      return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
+      return std::ranges::find(added_, alternative.name) != added_.end() ||
              (is_settled && alternative.rms > Limits().larger_rms * last.rms);
     });
     IncludeAlternatives(alternatives_, Limits(), last);
-    result_.fit = std::move(last);
-    result_.options = base_.options;
-    return;
+    result.fit = std::move(last);
+    result.options = base_.options;
+    result.added = added_;
+  } else {
+    result.fit = std::move(law);
+    for (const std::string& name : added_) {
+      TermCandidate& candidate = *std::ranges::find(candidates_, name, &TermCandidate::name);
+      candidate.added = false;
+      candidate.obstacle = "confounded";
+    }
   }
-  for (const std::string& name : result_.added) {
-    ConsideredTerm& considered = candidates_[*Find(name)].considered;
-    considered.added = false;
-    considered.obstacle = "confounded";
-  }
-  result_.added.clear();
+  result.considered.assign(candidates_.begin(), candidates_.end());
+  std::ranges::stable_sort(result.considered, std::greater(), &ConsideredTerm::gain);
+  std::ranges::stable_sort(result.considered, {}, [&](const ConsideredTerm& term) {
+    return std::ranges::find(result.added, term.name) - result.added.begin();
+  });
+  return result;
 }
 
 /// Fits each of the few candidates that promise most, and returns those that can be added, the one
 /// that gains most first; the gain of a column that follows the force counts twice.
-std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law,
-                                           std::size_t most) {
-  if (!IsFitted(law) || !Begin(options, law)) return {};
-  std::vector<Gain> tried = Score();
-  std::erase_if(tried, [&](const Gain& gain) {
-    return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
+std::vector<std::string> Selection::Likely(std::size_t most) {
+  std::vector<TermCandidate*> tried = Score();
+  std::erase_if(tried, [&](TermCandidate* candidate) {
+    return candidate->gain < Limits().worthwhile_gain || IsRefused(*candidate);
   });
   // A linear step does not predict the gain of a column whose force the law has taken up: it is
   // fitted first.
-  const auto column = std::ranges::find_if(candidates_, FollowsForce);
-  if (column != candidates_.end()) {
-    const auto c = static_cast<std::size_t>(column - candidates_.begin());
-    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == c; });
-    tried.insert(tried.begin(), {c, {}});
-  }
+  const auto column = std::ranges::find_if(candidates_, &TermCandidate::FollowsForce);
+  if (column != candidates_.end() && IsFitted(base_.fit)) tried.insert(tried.begin(), &*column);
   tried.resize(std::min(tried.size(), most));
   std::multimap<double, std::string, std::greater<>> by_gain;
-  for (const auto& [c, score] : tried) {
-    const Model model =
-        FitWith(candidates_[c].choice, score.values.empty() ? nullptr : &score.values);
+  for (const TermCandidate* const candidate : tried) {
+    const bool is_column = candidate->FollowsForce();
+    const Model model = FitWith(candidate->choice);
     // A column that causes a part of the force reduces Tc: that alone does not rule it out.
     const std::string_view obstacle = ObstacleTo(model);
-    const bool is_column = FollowsForce(candidates_[c]);
     if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit))) continue;
     // A measured column is preferred to a term that gains less than twice as much.
     const double gain = base_.fit.rms - model.fit.rms;
-    by_gain.emplace(is_column ? gain / Limits().rival : gain, candidates_[c].considered.name);
+    by_gain.emplace(is_column ? gain / Limits().rival : gain, candidate->name);
   }
   std::vector<std::string> names;
   for (auto& [gain, name] : by_gain) names.push_back(std::move(name));
@@ -548,14 +464,19 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
 
 }  // namespace
 
-TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options) {
-  return Selection(records).Run(options);
+TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
+                          FitResult fit) {
+  const bool is_described = fit.adequacy.verdict == AdequacyVerdict::kAdequate;
+  if (!IsFitted(fit) || is_described || options.response() != loop::Channel::kForce) {
+    return {.considered = {}, .added = {}, .options = options, .fit = std::move(fit)};
+  }
+  return Selection(records, options, fit).Run(std::move(fit));
 }
 
 std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const FitOptions& options,
                                      const FitResult& fit, std::size_t most) {
-  if (options.response() != loop::Channel::kForce) return {};
-  return Selection(records).Likely(options, fit, most);
+  if (!IsFitted(fit) || options.response() != loop::Channel::kForce) return {};
+  return Selection(records, options, fit).Likely(most);
 }
 
 }  // namespace mindahl::identification

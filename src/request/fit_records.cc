@@ -117,7 +117,7 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
   const bool chooses_law = request.fit.model == nullptr;
   TermSelection asked;
   asked.options = options;
-  if (chooses_law || !request.chooses_terms) asked.fit = identification::Fit(records, options);
+  asked.fit = identification::Fit(records, options);
   const auto& choice = asked.fit.law_choice;
   if (chooses_law && (choice ? choice->prefers_alternative() : !asked.fit.converged)) {
     FitOptions of_other = options;
@@ -135,7 +135,7 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
   }
   if (!request.chooses_terms) return asked;
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  asked = identification::SelectTerms(views, asked.options);
+  asked = identification::SelectTerms(views, asked.options, std::move(asked.fit));
   // The law was chosen before the terms: of the other one with them nothing is said.
   if (chooses_law && WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
@@ -264,8 +264,8 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
   FitOptions of_head = options;
   // The head is fitted like its cycles: an asymmetry is then an offset of each.
   of_head.initial_states = {models::InitialState::kSteady};
-  const identification::TermSelection selection =
-      identification::SelectTerms(std::span(&head, 1), of_head);
+  const TermSelection selection =
+      identification::SelectTerms({&head, 1}, of_head, identification::Fitter(of_head).Fit(head));
   options.terms = selection.options.terms;
   if (selection.added.empty()) return "terms: the first cycles require none";
   return fmt::format("terms fitted to all cycles, as the first cycles require: {}",

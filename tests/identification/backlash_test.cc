@@ -104,7 +104,8 @@ TEST(Backlash, IsAmongTheTermsThatAreAdded) {
   const Record record =
       testing::WithForceNoise(BehindGap(Cycling(Wave::kSine, kReach, 3.1, kSamplesPerCycle)),
                               0.01 * kLaw.slip_force, generator);
-  const TermSelection selection = SelectTerms(std::vector<RecordView>{record}, {});
+  const TermSelection selection =
+      SelectTerms(std::vector<RecordView>{record}, {}, FitOne(record, {}));
   EXPECT_THAT(selection.added, ::testing::Contains("backlash"));
   EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   const ParameterEstimate& gap = *selection.fit.Find("backlash");

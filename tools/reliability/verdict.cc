@@ -191,9 +191,9 @@ Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed, bool adds
   const Loop loop = MakeLoop(kind, level, seed);
   try {
     const mindahl::loop::RecordView record(loop.record);
-    return Judge(adds_terms ? identification::SelectTerms({&record, 1}, {}).fit
-                            : identification::Fit({&loop.record, 1}),
-                 loop.expected);
+    FitResult fit = identification::Fit({&loop.record, 1});
+    if (adds_terms) fit = identification::SelectTerms({&record, 1}, {}, std::move(fit)).fit;
+    return Judge(fit, loop.expected);
   } catch (const InvalidArgument& refusal) {
     return {.outcome = Outcome::kUndecided,
             .alarms = true,

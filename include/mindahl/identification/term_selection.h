@@ -32,22 +32,24 @@ struct TermSelection {
 
 /// Fits a record with the terms that it requires and no others (forward selection).
 ///
-/// A record that the law describes adequately gets none: its fit is Fit()'s to the last digit.
-/// Otherwise every candidate for which there are data is scored by one Gauss-Newton step from the
-/// present solution. Of those that lower the rms by 3 %, by chance with p < 0.05 over all
-/// candidates, the best is fitted, or what has some of its terms only and gains half as much; it is
-/// added unless its fit does not converge, gains less, ends at a bound or leaves the half gap, else
-/// the next one is tried. The rounds end when none is added or 15 fits are made.
+/// A record that the law describes adequately gets none: its fit stays as it is. Otherwise every
+/// candidate for which there are data is scored by one Gauss-Newton step from the present solution.
+/// Of those that lower the rms by 3 %, by chance with p < 0.05 over all candidates, the best is
+/// fitted, or what has some of its terms only and gains half as much; it is added unless its fit
+/// does not converge, gains less, ends at a bound or leaves the half gap, else the next one is
+/// tried. The rounds end when none is added or 15 fits are made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
-/// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:
+/// a candidate before it, or where it follows the contact's force, |r| > 0.3:
 /// its factor and the slip force then share what the record shows. No term is added with which Tc
 /// of a loop that slides leaves the half gap that was measured, unless it leaves nothing but noise.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
+/// @param fit      of the records with the options, at Depth::kFull
 /// @throws InvalidArgument as Fit does
 /// Deterministic. Nothing is selected in a fit of the displacement.
-TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options);
+TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
+                          FitResult fit);
 
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
 /// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are

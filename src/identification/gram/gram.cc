@@ -4,7 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <numeric>
 
 namespace mindahl::identification {
 namespace {
@@ -78,6 +78,12 @@ double Gram::IndependentTests() const {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(correlation, Eigen::EigenvaluesOnly);
   const Eigen::ArrayXd values = pairs.eigenvalues().array().max(0.0);
   return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
+}
+
+std::vector<Eigen::Index> Gram::All() const {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(free_.cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return all;
 }
 
 GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {

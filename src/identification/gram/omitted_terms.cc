@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "core/probability.h"
 #include "identification/gram/gram.h"
@@ -109,9 +108,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
       ColumnsOfDepartures(problem, solution.theta, thresholds, response, most);
   if (departures.terms.empty()) return {};
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
-  std::vector<Eigen::Index> all(static_cast<std::size_t>(departures.columns.cols()));
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  GramAxes axes = gram.AxesOf(all);
+  GramAxes axes = gram.AxesOf(gram.All());
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
@@ -120,7 +117,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
     gram.SetNoise(noise.Product(data.records, process, columns));
-    axes = gram.AxesOf(all);
+    axes = gram.AxesOf(gram.All());
   }
   AdequacyTest test;
   const auto own = static_cast<double>(axes.values.size());

@@ -340,7 +340,7 @@ const Term* FindTerm(std::string_view name, loop::Channel response) {
 std::span<const TermGroup> TermGroups() {
   static const std::vector<TermGroup> groups = {
       {"viscous", {"viscous"}, "force C·v of the velocity v"},
-      {"speed_exponent", {"speed_exponent", "viscous"}, "force C·v^m"},
+      {"speed_exponent", {"speed_exponent", "viscous"}, "force C·v^m", /*is_tried=*/false},
       {"drag", {"drag_fraction", "drag_exponent"}, "part d of Tc, by v^m, without memory"},
       {"inertia", {"inertia"}, "force of a mass between contact and load cell"},
       {"plateau_slope", {"plateau_slope"}, "force in proportion to the displacement"},
