@@ -1,5 +1,6 @@
 #include "identification/diagnosis/residuals.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,62 +56,62 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
 
 ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
                                     const Thresholds& thresholds) {
-  constexpr std::size_t kParts = 20;
+  constexpr int kParts = 20;
+  using Parts = Eigen::Array<double, kParts, 1>;
+  struct Side {
+    Parts strokes = Parts::Zero();  // that have samples in a part
+    Parts sums = Parts::Zero();     // of their means
+    Parts squares = Parts::Zero();
+  };
   const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
-  struct Parts {
-    std::array<double, kParts> sums{};
-    std::array<double, kParts> counts{};
-  };
-  std::array<std::vector<Parts>, 2> strokes;
+  std::array<Side, 2> sides;
   double squares = 0.0;
   double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
-    const std::size_t side = stroke.direction > 0 ? 0 : 1;
     const double from = excitation[stroke.begin];
     const double way = excitation[stroke.end] - from;
+    Parts sums = Parts::Zero();
+    Parts counts = Parts::Zero();
     double own_squares = 0.0;
-    Parts of_stroke;
     for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
       if (record.counts[i] == 0) continue;
-      const double share = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
-      const auto part = std::min(static_cast<std::size_t>(share * kParts), kParts - 1);
-      of_stroke.sums[part] += residual[i];
-      ++of_stroke.counts[part];
+      const double progress = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
+      const int part = std::min(static_cast<int>(progress * kParts), kParts - 1);
+      sums[part] += residual[i];
+      counts[part] += 1;
       own_squares += residual[i] * residual[i];
     }
-    const double count = std::accumulate(of_stroke.counts.begin(), of_stroke.counts.end(), 0.0);
-    if (count < 2) continue;  // left out, but for a reversal that it shares
-    strokes[side].push_back(of_stroke);
+    if (counts.sum() < 2) continue;  // left out, but for a reversal that it shares
+    const std::size_t side = stroke.direction > 0 ? 0 : 1;
+    const Parts means = sums / counts.max(1);
+    sides[side].strokes += (counts > 0).cast<double>();
+    sides[side].sums += means;
+    sides[side].squares += means.square();
     ++structure.strokes[side];
     squares += own_squares;
-    samples += count;
+    samples += counts.sum();
   }
   double between = 0.0;  // Σ n·m̄², of parts
   double within = 0.0;   // Σ (m − m̄)², of strokes within parts
   double parts = 0.0;
   double degrees_within = 0.0;
-  double systematic = 0.0;      // Σ (m̄² − s²/n)
-  std::vector<double> of_part;  // means of strokes
-  for (std::size_t k = 0; k < 2 * kParts; ++k) {
-    of_part.clear();
-    for (const auto& [sums, counts] : strokes[k / kParts]) {
-      if (const double n = counts[k % kParts]; n > 0) of_part.push_back(sums[k % kParts] / n);
-    }
-    const auto count = static_cast<double>(of_part.size());
-    if (count < 2) continue;
-    const double mean = std::accumulate(of_part.begin(), of_part.end(), 0.0) / count;
-    double scatter = 0.0;
-    for (const double stroke : of_part) scatter += (stroke - mean) * (stroke - mean);
-    between += count * mean * mean;
-    within += scatter;
-    degrees_within += count - 1;
-    systematic += mean * mean - scatter / (count - 1) / count;
-    ++parts;
+  double systematic = 0.0;  // Σ (m̄² − s²/n)
+  for (const Side& side : sides) {
+    const Parts is_used = (side.strokes > 1).cast<double>();
+    const Parts n = side.strokes.max(2);
+    const Parts mean = side.sums / n;
+    const Parts scatter = is_used * (side.squares - n * mean.square()).max(0);
+    between += (is_used * n * mean.square()).sum();
+    within += scatter.sum();
+    degrees_within += (is_used * (n - 1)).sum();
+    systematic += (is_used * mean.square() - scatter / (n - 1) / n).sum();
+    parts += is_used.sum();
   }
   const double mean_square = squares / samples;
-  if (parts == 0 || !(within > 0) || !(mean_square > 0)) return structure;
-  const double ratio = between / parts / (within / degrees_within);
+  if (parts == 0 || !(between > 0)) return structure;
+  constexpr double kRounding = 1e-15;  // of what repeats to the last digit
+  const double ratio = between / parts / (std::max(within, kRounding * between) / degrees_within);
   if (PValueOfF(ratio, parts, degrees_within) <= thresholds.rare_chance) {
     structure.repeatable_share = std::clamp(systematic / parts / mean_square, 0.0, 1.0);
   }
