@@ -13,14 +13,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Returns Σ(x − x̄)(y − ȳ): of the same x, slopes are in proportion to it.
-double CrossProduct(const std::vector<double>& x, const std::vector<double>& y) {
-  if (x.empty()) return 0.0;
-  const Eigen::Map<const Eigen::ArrayXd> of_x(x.data(), std::ssize(x));
-  const Eigen::Map<const Eigen::ArrayXd> of_y(y.data(), std::ssize(y));
-  return ((of_x - of_x.mean()) * (of_y - of_y.mean())).sum();
-}
-
 /// Half the width of the interval in which a further cycle of the same loop has its half gap:
 /// Student's for so few cycles.
 double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
@@ -31,65 +23,68 @@ double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
 }
 
 /// The stiffness of the record after its reversals over that of the model: slopes of least squares,
-/// each stroke with an intercept of its own, over the places where the model's force has changed by
-/// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
-/// reversal itself, the parabola through these and the square of the narrowest window's.
-/// @returns those of windows that have two samples a stroke or more
-std::vector<double> StiffnessOfWindows(const Estimates& estimates, const Thresholds& thresholds) {
-  std::vector<double> ratios;
+/// each stroke with an intercept of its own, where the model's force has changed by less than a
+/// fraction of what it changes by in the stroke.
+/// @returns nothing where the strokes have fewer than two samples there
+std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresholds& thresholds,
+                                       double window) {
+  constexpr double kFewestOfAStroke = 2;  // samples, for a chord
   const ScaledRecords& data = *estimates.problem().data;
-  if (data.is_forced()) return ratios;
-  for (const double window : {0.125, 0.25, 0.5}) {
-    double measured = 0.0;
-    double model = 0.0;
-    double strokes = 0.0;
-    double samples = 0.0;
-    std::size_t begin = 0;
-    for (const ScaledRecord& record : data.records) {
-      const auto force_of_model = [&](std::size_t i) {
-        return record.force[i] +
-               estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
-      };
-      for (const Stroke& stroke : MainStrokes(record, thresholds)) {
-        std::vector<double> places;
-        std::vector<double> measured_forces;
-        std::vector<double> model_forces;
-        std::optional<double> first;
-        double last = 0.0;
-        for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-          if (!(record.root_weight[i] > 0)) continue;
-          if (!first) first = force_of_model(i);
-          last = force_of_model(i);
-        }
-        if (!first) continue;
-        // The motion turned anywhere about its outermost sample.
-        for (std::size_t i = stroke.begin + 1; i < stroke.end; ++i) {
-          if (!(record.root_weight[i] > 0)) continue;
-          const double force = force_of_model(i);
-          if (std::abs(force - *first) > window * std::abs(last - *first)) break;
-          places.push_back(record.displacement[i]);
-          measured_forces.push_back(record.force[i]);
-          model_forces.push_back(force);
-        }
-        measured += CrossProduct(places, measured_forces);
-        model += CrossProduct(places, model_forces);
-        samples += static_cast<double>(places.size());
-        ++strokes;
+  double measured = 0.0;
+  double model = 0.0;
+  double strokes = 0.0;
+  double samples = 0.0;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    const auto force_of_model = [&](std::size_t i) {
+      return record.force[i] +
+             estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
+    };
+    for (const Stroke& stroke : MainStrokes(record, thresholds)) {
+      std::vector<std::size_t> counted;
+      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+        if (record.root_weight[i] > 0) counted.push_back(i);
       }
-      begin += record.size();
+      if (counted.empty()) continue;
+      const double first = force_of_model(counted.front());
+      const double limit = window * std::abs(force_of_model(counted.back()) - first);
+      std::vector<double> near;  // displacement, force and the model's of a sample
+      for (const std::size_t i : counted) {
+        const double force = force_of_model(i);
+        if (std::abs(force - first) > limit) break;
+        // The motion turned anywhere about its outermost sample.
+        if (i == stroke.begin) continue;
+        near.insert(near.end(), {record.displacement[i], record.force[i], force});
+      }
+      ++strokes;
+      if (near.empty()) continue;
+      const Eigen::Map<const Eigen::Array3Xd> at(near.data(), 3, std::ssize(near) / 3);
+      const Eigen::ArrayXd places = at.row(0).transpose() - at.row(0).mean();
+      measured += (places * at.row(1).transpose()).sum();
+      model += (places * at.row(2).transpose()).sum();
+      samples += static_cast<double>(at.cols());
     }
-    constexpr double kFewestOfAStroke = 2;  // samples a stroke, for a chord
-    if (samples < kFewestOfAStroke * strokes || model == 0) continue;
-    const double ratio = measured / model;  // of slopes at the same points
-    if (!(ratio > 0) || !std::isfinite(ratio)) continue;
-    ratios.push_back(ratio);
+    begin += record.size();
   }
-  // Each window is twice the one before: the parabola through three, at a window of nothing; and as
-  // much again within the narrowest as is seen of it.
-  const std::size_t windows = ratios.size();
-  if (windows > 0) ratios.push_back(ratios[0] * ratios[0]);
-  if (windows > 2) ratios.push_back(8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3);
-  std::erase_if(ratios, [](double ratio) { return !(ratio > 0); });
+  const double ratio = measured / model;  // of slopes at the same points
+  const bool is_known = samples >= kFewestOfAStroke * strokes && ratio > 0 && std::isfinite(ratio);
+  return is_known ? std::optional(ratio) : std::nullopt;
+}
+
+/// The same over an eighth, a quarter and a half of the change, and at the reversal itself: by the
+/// parabola through these, and as much again within the narrowest as is seen of it.
+std::vector<double> RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresholds) {
+  std::vector<double> ratios;
+  if (estimates.problem().data->is_forced()) return ratios;
+  for (const double window : {0.125, 0.25, 0.5}) {
+    const std::optional<double> ratio = RatioOfStiffness(estimates, thresholds, window);
+    if (ratio) ratios.push_back(*ratio);
+  }
+  if (ratios.empty()) return ratios;
+  const double parabola =
+      ratios.size() > 2 ? 8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3 : 0.0;
+  ratios.push_back(ratios[0] * ratios[0]);
+  if (parabola > 0) ratios.push_back(parabola);
   return ratios;
 }
 
@@ -99,7 +94,7 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
                                     const FitResult& result) {
   ParameterEstimates parameters = result.parameters;
   ParameterEstimate& slip_force = parameters[kSlipForce];
-  IncludeRatios(parameters[kStiffness], StiffnessOfWindows(fitted, thresholds));
+  IncludeRatios(parameters[kStiffness], RatiosOfStiffness(fitted, thresholds));
   for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
     estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed &&
