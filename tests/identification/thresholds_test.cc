@@ -95,7 +95,6 @@ bool IsDoubted(const Thresholds& thresholds, double chance) {
 
 OmittedTerm FitWith(double p_value, double delta_aicc) {
   OmittedTerm fit;
-  fit.departure = &Departures().front();
   fit.p_value = p_value;
   fit.delta_aicc = delta_aicc;
   return fit;

@@ -107,8 +107,7 @@ std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& th
   std::erase_if(causes,
                 [&](const OmittedTerm& fit) { return fit.explains < thresholds.rival * best; });
   // Causes that a fit can model come first: the user can try only those.
-  std::ranges::stable_partition(
-      causes, [](const OmittedTerm& fit) { return !fit.departure->group.empty(); });
+  std::ranges::stable_partition(causes, [](const OmittedTerm& fit) { return !fit.term.empty(); });
   return causes;
 }
 
@@ -135,12 +134,7 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   adequacy.misfit = test.misfit_over_noise * test.noise * data.response_unit();
   adequacy.p_value = test.p_value;
   adequacy.tried = test.fits.size();
-  for (const OmittedTerm& fit : causes) {
-    adequacy.causes.push_back(Cause{.code = fit.departure->code,
-                                    .delta_aicc = fit.delta_aicc,
-                                    .explains = fit.explains,
-                                    .term = fit.departure->group});
-  }
+  adequacy.causes.assign(causes.begin(), causes.end());
   const double noise = NoiseVariance(result);
   const double square = result.rms * result.rms;
   // The rms includes the readings that a robust loss weighs down.

@@ -59,19 +59,6 @@ RandomTerms EstimateTerms(const GramAxes& axes, const NoiseLevel& noise) {
           .gains = ratio / spread(ratio)};
 }
 
-/// Returns the Jacobian without the columns of parameters at a bound, the user's or the program's:
-/// what these would still explain, they may not.
-Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
-                              Eigen::MatrixXd jacobian) {
-  const auto& free = problem.parameters.free();
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    if (solution.side[free[j]] != BoundSide::kInside) {
-      jacobian.col(static_cast<Eigen::Index>(j)).setZero();
-    }
-  }
-  return jacobian;
-}
-
 std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
   return {vector.begin(), vector.end()};
 }
@@ -98,7 +85,13 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
   const ScaledRecords& data = *problem.data;
-  const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, fitted.jacobian());
+  const auto& free = problem.parameters.free();
+  Eigen::MatrixXd jacobian = fitted.jacobian();
+  // What parameters at a bound, the user's or the program's, would still explain, they may not.
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    if (solution.side[free[j]] == BoundSide::kInside) continue;
+    jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+  }
   const Eigen::VectorXd& residual = fitted.residual();
   const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);

@@ -9,17 +9,16 @@
 
 #include "identification/inference/places.h"
 #include "identification/problem/problem.h"
+#include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
 /// A column of an omitted term, of the response.
-struct DepartureColumn {
-  double (*value)(const Place&) = nullptr;
-  bool is_motion = false;  // the value moves the contact, which responds with its memory
-};
+using DepartureColumn = double (*)(const Place&);
 
 /// A way in which a record may depart from the model, to first order: a response in proportion to
-/// one to four columns. Without a value there is no such column.
+/// one to four columns. Where there are fewer the rest is null.
 struct Departure {
   std::string_view code;
   std::string_view group = {};  // of terms that fits it; empty where there is none
@@ -28,22 +27,15 @@ struct Departure {
   std::string_view term = {};
   std::array<DepartureColumn, 4> columns = {};
   std::array<DepartureColumn, 3> of_displacement = {};  // that answers an imposed force
-
-  [[nodiscard]] std::span<const DepartureColumn> ColumnsOf(loop::Channel imposed) const {
-    if (imposed == loop::Channel::kForce) return of_displacement;
-    return columns;
-  }
+  bool moves = false;  // `columns` move the contact, which responds with its memory
 };
 
-/// An omitted term of a record: one of Departures().
-struct OmittedTerm {
-  const Departure* departure = nullptr;
+/// An omitted term of a record: one of Departures(). Of one that noise may well have made only the
+/// p-value; else the fit with it, by one linear step.
+struct OmittedTerm : Cause {
   std::vector<Eigen::Index> places = {};  // of its columns
-  // The fit with it, by one linear step; only the p-value of one that noise may well have made:
-  double p_value = 1.0;           // that noise alone makes it
-  double delta_aicc = 0.0;        // against the fit without
-  double explains = 0.0;          // fraction of the sum of squares
-  std::vector<double> step = {};  // of θ, one a free parameter
+  double p_value = 1.0;                   // that noise alone makes it
+  std::vector<double> step = {};          // of θ, one a free parameter
 };
 
 /// Holds the columns of all omitted terms at a solution.
