@@ -97,7 +97,7 @@ bool Scorer::WasFree(const Problem& problem, std::size_t p) const {
   return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
 }
 
-/// Of an exponent that shapes columns which the fit does not have the value is taken with which the
+/// Takes of an exponent that shapes columns which the fit does not have the value with which the
 /// choice gains most.
 std::optional<TermScore> Scorer::Score(const TermChoice& choice) {
   const Problem problem = ProblemOf(choice.AddedTo(options_));

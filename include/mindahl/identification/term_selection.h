@@ -40,9 +40,9 @@ struct TermSelection {
 /// tried. The rounds end when none is added or 15 fits are made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
-/// a candidate before it, or where it follows the contact's force, |r| > 0.3:
-/// its factor and the slip force then share what the record shows. No term is added with which Tc
-/// of a loop that slides leaves the half gap that was measured, unless it leaves nothing but noise.
+/// a candidate before it, or where it follows the contact's force, |r| > 0.3: its factor and the
+/// slip force then share what the record shows. No term is added with which Tc of a loop that
+/// slides leaves the half gap that was measured, unless it leaves nothing but noise.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
 /// @param fit      of the records with the options, at Depth::kFull
@@ -52,8 +52,8 @@ TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOp
                           FitResult fit);
 
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
-/// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are
-/// fitted at Depth::kEstimate, and those with an obstacle to them left out.
+/// that score best as SelectTerms() scores its candidates, a column that follows the force before
+/// all, are fitted at Depth::kEstimate, and those with an obstacle to them left out.
 /// @param options  of the fit
 std::vector<std::string> LikelyTerms(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const FitResult& fit,
