@@ -28,7 +28,7 @@ struct CeresProblem::State {
   loop::PreparedRecords prepared;
   ScaledRecords data;
   std::optional<Problem> problem;
-  std::shared_ptr<UnprojectedResidual> residual;
+  double residual_unit = 1.0;  // [units of the data]
   std::vector<CeresParameter> parameters;
   std::vector<std::size_t> blocks;  // among the parameters
 };
@@ -39,7 +39,7 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   RequirePositive("residual unit", residual_unit);
   FitOptions options = given;
   options.preparation.force_sense = fit.force_sense;
-  auto& [prepared, data, problem, residual, values, blocks] = *state_;
+  auto& [prepared, data, problem, unit, values, blocks] = *state_;
   prepared = loop::Prepare(records, options.preparation);
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
@@ -50,13 +50,12 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
     data.records[r].turns_between = fit.records[r].turns_between;
   }
   problem = Problem{&data, options.model, states, Parameters(data, options, states)};
-  residual = std::make_shared<UnprojectedResidual>(*problem, residual_unit / data.response_unit());
+  unit = residual_unit / data.response_unit();
+  const std::vector<std::size_t> of_residual = UnprojectedResidual::BlocksOf(*problem);
   const Parameters& parameters = problem->parameters;
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    if (std::ranges::find(residual->blocks(), p) != residual->blocks().end()) {
-      blocks.push_back(values.size());
-    }
+    if (std::ranges::count(of_residual, p) > 0) blocks.push_back(values.size());
     CeresParameter& value = values.emplace_back(
         CeresParameter{.name = parameters.NameOf(p),
                        .unit = parameters.UnitOf(p, !data.records.front().velocity.empty()),
@@ -89,15 +88,16 @@ CeresParameter& CeresProblem::Find(std::string_view name) {
 
 std::span<const std::size_t> CeresProblem::blocks() const { return state_->blocks; }
 
-std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction() const {
-  return CostOf(state_->residual);
+std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction(
+    std::unique_ptr<ceres::LossFunction> loss) const {
+  return std::make_unique<UnprojectedResidual>(*state_->problem, state_->residual_unit,
+                                               std::move(loss));
 }
 
 void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
   std::vector<double*> theta;
   for (const std::size_t place : blocks()) theta.push_back(&state_->parameters[place].theta);
-  // Ceres deletes a loss once, however many blocks share it.
-  AddResidual(state_->residual, theta, loss.release(), problem);
+  problem.AddResidualBlock(MakeCostFunction(std::move(loss)).release(), nullptr, theta);
   for (CeresParameter& parameter : state_->parameters) {
     BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }

@@ -49,7 +49,7 @@ struct [[gnu::visibility("default")]] CeresParameter {
 ///
 /// Without residuals of one's own its minimum is the fit's. Turning points that the fit found
 /// between samples, weights of noisy displacements and those of a robust loss are not part of it;
-/// a robust loss is given to AddTo(), which then adds one residual block a sample.
+/// a robust loss is given to AddTo(), which applies it to each sample.
 class [[gnu::visibility("default")]] CeresProblem {
  public:
   /// @param records        [m], [N]; those of the fit
@@ -74,11 +74,14 @@ class [[gnu::visibility("default")]] CeresProblem {
   [[nodiscard]] std::span<const std::size_t> blocks() const;
   /// Returns the residuals of all samples, one record after the other; those that do not count are
   /// 0. It refers to this problem.
-  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction() const;
+  /// @param loss  of each sample, in residual units, of whose residual it puts sgn(r)·√ρ(r²) in the
+  ///              place; none: least squares
+  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction(
+      std::unique_ptr<ceres::LossFunction> loss = nullptr) const;
 
   /// Adds the residual block, bounds, and holds what the fit holds.
   /// @param problem  takes ownership of what is added; this must outlive it
-  /// @param loss     of each sample, in residual units; none: least squares. Taken over
+  /// @param loss     of each sample, in residual units; none: least squares
   void AddTo(ceres::Problem & problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);
 
  private:

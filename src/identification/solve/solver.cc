@@ -234,14 +234,11 @@ std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
 void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
                   Solution& solution) {
   std::vector<double>& theta = solution.theta;
-  const std::unique_ptr<ceres::LossFunction> loss_function = LossOf(loss);
-  ceres::Problem::Options of_problem;
-  of_problem.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem ceres_problem(of_problem);
-  const auto residual = std::make_shared<UnprojectedResidual>(problem, scale);
+  ceres::Problem ceres_problem;
   std::vector<double*> blocks;
-  for (const std::size_t p : residual->blocks()) blocks.push_back(&theta[p]);
-  AddResidual(residual, blocks, loss_function.get(), ceres_problem);
+  for (const std::size_t p : UnprojectedResidual::BlocksOf(problem)) blocks.push_back(&theta[p]);
+  ceres_problem.AddResidualBlock(new UnprojectedResidual(problem, scale, LossOf(loss)), nullptr,
+                                 blocks);
   for (const std::size_t p : problem.parameters.with_prior()) {
     const Parameter& parameter = problem.parameters[p];
     ceres_problem.AddResidualBlock(

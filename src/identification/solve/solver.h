@@ -35,9 +35,8 @@ struct Solution {
 /// (Huber 1981; Holland & Welsch 1977): null for none.
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss);
 
-/// Minimises ½ Σ ρ((w·r/scale)²) of the samples by ceres::Solve, one residual block with a
-/// ceres::LossFunction a sample, or one of all without a loss, and one a prior, over all free
-/// parameters within their bounds.
+/// Minimises ½ Σ ρ((w·r/scale)²) of the samples, and of the priors without a loss, by ceres::Solve
+/// over all free parameters within their bounds.
 /// @param scale     of the weighted residuals [units of the data], > 0
 /// @param solution  θ is where the search starts; written but for sum of squares and residual
 void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverOptions& options,

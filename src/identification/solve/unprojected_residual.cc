@@ -1,8 +1,8 @@
 #include "identification/solve/unprojected_residual.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mindahl/core/error.h"
@@ -10,89 +10,76 @@
 namespace mindahl::identification {
 namespace {
 
-/// The cost function of some samples.
-class SampleCost final : public ceres::CostFunction {
- public:
-  SampleCost(std::shared_ptr<UnprojectedResidual> residual, std::size_t first, std::size_t count)
-      : residual_(std::move(residual)), first_(first), count_(count) {
-    set_num_residuals(static_cast<int>(count));
-    mutable_parameter_block_sizes()->assign(residual_->blocks().size(), 1);
-  }
+/// Puts the loss of a residual in its place.
+/// @returns the derivative by the residual
+double ApplyLoss(const ceres::LossFunction& loss, double& residual) {
+  constexpr double kQuadratic = 1e-10;  // below it a loss is its square, but for its rounding
+  const double square = residual * residual;
+  if (square < kQuadratic) return 1.0;
+  std::array<double, 3> rho{};  // and its derivatives by the square
+  loss.Evaluate(square, rho.data());
+  const double slope = rho[1] * std::abs(residual) / std::sqrt(rho[0]);
+  residual = std::copysign(std::sqrt(rho[0]), residual);
+  return slope;
+}
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    residual_->MoveTo(parameters, jacobians != nullptr);
-    bool is_finite = Copy(residual_->residual(), residuals);
-    for (std::size_t b = 0; jacobians != nullptr && b < residual_->blocks().size(); ++b) {
-      if (jacobians[b] == nullptr) continue;
-      is_finite = Copy(residual_->Derivative(b), jacobians[b]) && is_finite;
-    }
-    return is_finite;  // Ceres would print what is no number
-  }
-
- private:
-  /// @returns whether the values are finite
-  bool Copy(std::span<const double> values, double* to) const {
-    const std::span<const double> some = values.subspan(first_, count_);
-    std::ranges::copy(some, to);
-    return std::ranges::all_of(some, [](double value) { return std::isfinite(value); });
-  }
-
-  std::shared_ptr<UnprojectedResidual> residual_;
-  std::size_t first_;
-  std::size_t count_;
-};
+bool AreFinite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
 
 }  // namespace
 
-UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit)
-    : problem_(problem), unit_(unit), residual_(problem.size()) {
+UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit,
+                                         std::unique_ptr<ceres::LossFunction> loss)
+    : problem_(problem), unit_(unit), loss_(std::move(loss)), blocks_(BlocksOf(problem)) {
+  set_num_residuals(static_cast<int>(problem.size()));
+  mutable_parameter_block_sizes()->assign(blocks_.size(), 1);
+  response_.Bind(problem);
+}
+
+std::vector<std::size_t> UnprojectedResidual::BlocksOf(const Problem& problem) {
   const Parameters& parameters = problem.parameters;
-  for (const Parameter& parameter : parameters) theta_.push_back(parameter.theta);
+  std::vector<std::size_t> blocks;
   for (const std::size_t p : parameters.reported()) {
     const std::size_t record = parameters[p].record;
     const bool is_steady_origin = p == parameters.PositionOfOrigin(record) &&
                                   problem.states[record] == models::InitialState::kSteady;
-    if (!is_steady_origin) blocks_.push_back(p);
+    if (!is_steady_origin) blocks.push_back(p);
   }
-  response_.Bind(problem);
-  jacobian_.resize(samples() * blocks_.size());
+  return blocks;
 }
 
-void UnprojectedResidual::MoveTo(double const* const* theta, bool with_jacobian) {
-  bool is_there = at_.size() == blocks_.size();
-  for (std::size_t b = 0; b < at_.size(); ++b) is_there = is_there && at_[b] == *theta[b];
-  if (is_there && (has_jacobian_ || !with_jacobian)) return;
-  at_.resize(blocks_.size());
-  for (std::size_t b = 0; b < at_.size(); ++b) theta_[blocks_[b]] = at_[b] = *theta[b];
-  const std::span<const std::size_t> columns =
-      with_jacobian ? std::span<const std::size_t>(blocks_) : std::span<const std::size_t>();
+bool UnprojectedResidual::Evaluate(double const* const* parameters, double* residuals,
+                                   double** jacobians) const {
+  std::vector<double> theta;
+  for (const Parameter& parameter : problem_.parameters) theta.push_back(parameter.theta);
+  std::vector<std::size_t> wanted;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    theta[blocks_[b]] = *parameters[b];
+    if (jacobians != nullptr && jacobians[b] != nullptr) wanted.push_back(blocks_[b]);
+  }
+  const std::span<double> residual(residuals, problem_.size());
+  std::vector<double> jacobian(wanted.size() * residual.size());
   try {
-    Differentiate(problem_, theta_, response_, columns, residual_, jacobian_);
+    Differentiate(problem_, theta, response_, wanted, residual, jacobian);
   } catch (const InvalidArgument&) {  // no law: exp(θ) is 0 or infinite
-    std::ranges::fill(residual_, std::numeric_limits<double>::quiet_NaN());
+    return false;
   }
-  for (double& value : residual_) value /= unit_;
-  has_jacobian_ = with_jacobian;
-  if (!with_jacobian) return;
-  for (double& value : jacobian_) value /= unit_;
-}
-
-std::unique_ptr<ceres::CostFunction> CostOf(std::shared_ptr<UnprojectedResidual> residual) {
-  const std::size_t samples = residual->samples();
-  return std::make_unique<SampleCost>(std::move(residual), 0, samples);
-}
-
-void AddResidual(const std::shared_ptr<UnprojectedResidual>& residual,
-                 const std::vector<double*>& blocks, ceres::LossFunction* loss,
-                 ceres::Problem& problem) {
-  if (loss == nullptr) {
-    problem.AddResidualBlock(CostOf(residual).release(), nullptr, blocks);
-    return;
+  // Ceres would print what is no number.
+  if (!AreFinite(residual) || !AreFinite(jacobian)) return false;
+  std::vector<double> slope(residual.size(), 1 / unit_);
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    residual[i] /= unit_;
+    if (loss_) slope[i] *= ApplyLoss(*loss_, residual[i]);
   }
-  for (std::size_t i = 0; i < residual->samples(); ++i) {
-    problem.AddResidualBlock(std::make_unique<SampleCost>(residual, i, 1).release(), loss, blocks);
+  auto column = jacobian.begin();
+  for (std::size_t b = 0; jacobians != nullptr && b < blocks_.size(); ++b) {
+    if (jacobians[b] == nullptr) continue;
+    std::ranges::transform(slope, std::span(column, residual.size()), jacobians[b],
+                           std::multiplies());
+    column += std::ssize(residual);
   }
+  return true;
 }
 
 void BoundBlock(double* theta, bool fixed, double lower, double upper, ceres::Problem& problem) {
