@@ -99,8 +99,6 @@ struct Term {
   bool positive = false;
   double lowest = -10.0;  ///< default bounds, in units of the data
   double highest = 10.0;
-  /// How far a search may move θ in one step; α by so much of itself, where that is beyond 1.
-  double longest_step = 1.5;
   TermScale powers = {};
   /// The factor of a column (problem/problem.h); others enter through the law or the path.
   bool is_linear = false;

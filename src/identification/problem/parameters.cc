@@ -185,12 +185,13 @@ double Parameter::ToTheta(double value) const {
   return term->positive ? std::log(value / scale) : (value - reference) / scale;
 }
 
-BoundSide SideOf(double theta, double lower, double upper) {
+BoundSide SideOf(const Parameter& parameter, double theta) {
   constexpr double kAtBound = 1e-9;
   constexpr double kWide = 1e3;
-  const double tolerance = kAtBound * std::clamp(upper - lower, 1.0, kWide);
-  if (theta - lower <= tolerance) return BoundSide::kLower;
-  if (upper - theta <= tolerance) return BoundSide::kUpper;
+  const double distance = parameter.upper - parameter.lower;
+  const double tolerance = kAtBound * std::clamp(distance, 1.0, kWide);
+  if (theta - parameter.lower <= tolerance) return BoundSide::kLower;
+  if (parameter.upper - theta <= tolerance) return BoundSide::kUpper;
   return BoundSide::kInside;
 }
 
@@ -228,6 +229,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
   ApplyLimits(options, all_are_steady);
   if (is_masing && data.load_varies) KeepShapeBelowOne();
+  if (data.is_forced()) KeepSlipForceAboveLoops(data, states);
   ApplyGuesses(options, data.prior_noise);
   RequireTerms(data);
   if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
@@ -278,6 +280,18 @@ void Parameters::KeepShapeBelowOne() {
   ThrowInvalid("alpha [-]", lowest,
                "must be below 0.99 where the normal load varies, or keep to one load with --select "
                "load=LO:HI");
+}
+
+/// Bounds Tc where the force is imposed: below the largest force of a steady loop it has no loop.
+void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data,
+                                         std::span<const models::InitialState> states) {
+  constexpr double kShortOfSlip = 1e-9;
+  double& lower = parameters_[kSlipForce].lower;
+  for (std::size_t r = 0; r < records_; ++r) {
+    if (states[r] != models::InitialState::kSteady) continue;
+    const auto [low, high] = std::ranges::minmax(data.records[r].excitation());
+    lower = std::max(lower, std::log((high - low) / 2) + kShortOfSlip);
+  }
 }
 
 void Parameters::Sort() {

@@ -63,10 +63,7 @@ struct Parameter {
 enum class BoundSide { kInside, kLower, kUpper };
 
 /// The one definition of "at a bound": within 1e-9 of the bounds' distance, at least 1e-9.
-BoundSide SideOf(double theta, double lower, double upper);
-inline BoundSide SideOf(const Parameter& parameter, double theta) {
-  return SideOf(theta, parameter.lower, parameter.upper);
-}
+BoundSide SideOf(const Parameter& parameter, double theta);
 
 /// True if a parameter that lies at this side stopped at a bound of the program's own: neither the
 /// user's, nor α = 0, which the theory has.
@@ -142,6 +139,8 @@ class Parameters {
   void RequireTerms(const ScaledRecords& data) const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne();
+  void KeepSlipForceAboveLoops(const ScaledRecords& data,
+                               std::span<const models::InitialState> states);
   void Sort();
   [[nodiscard]] Parameter& Find(std::string_view name);
 

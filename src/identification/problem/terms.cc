@@ -57,7 +57,6 @@ constexpr Term SlipChange(std::string_view name, std::string_view meaning, std::
           .meaning = meaning,
           .lowest = -kLargestSlipChange,
           .highest = kLargestSlipChange,
-          .longest_step = 0.25,
           .start = 0.0,
           .group = group};
 }
@@ -70,7 +69,6 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
           .meaning = meaning,
           .lowest = lowest,
           .highest = 1.0,
-          .longest_step = 0.25,
           .needs_time = true,
           .start = 0.5,
           .shapes = shapes,
@@ -94,7 +92,6 @@ constexpr std::array kTermRows = {
          .presence = Presence::kAlways,
          .lowest = 0.0,
          .highest = kHighestShapeExponent,
-         .longest_step = 1.0,
          .lowest_is_of_theory = true},
     Term{.name = "slip_force",
          .unit = "N",
@@ -122,7 +119,6 @@ constexpr std::array kTermRows = {
                     "it falls; slip_force is their mean",
          .lowest = -kLargestAsymmetry,
          .highest = kLargestAsymmetry,
-         .longest_step = 0.25,
          .group = "asymmetry"},
     Term{.name = "plateau_slope",
          .unit = "N/m",
@@ -160,7 +156,6 @@ constexpr std::array kTermRows = {
                     "third of the strokes, at which Tc is that of the fit",
          .lowest = -kLargestSlipBySpeed,
          .highest = kLargestSlipBySpeed,
-         .longest_step = 0.25,
          .needs_time = true,
          .start = 0.3,
          .needs = "slip_speed_exponent",
@@ -177,7 +172,6 @@ constexpr std::array kTermRows = {
                     "has no memory, t the contact's force over Tc, v₀ as for slip_speed",
          .lowest = 0.0,
          .highest = 1.0,
-         .longest_step = 0.25,
          .needs_time = true,
          .start = 0.3,
          .needs = "drag_exponent",
@@ -196,7 +190,6 @@ constexpr std::array kTermRows = {
          .positive = true,
          .lowest = kShortestPeriod,
          .highest = kLongestPeriod,
-         .longest_step = 0.2,
          .powers = kLengthUnit,
          .start = 0.0,
          .shapes = "ripple_",
@@ -214,7 +207,6 @@ constexpr std::array kTermRows = {
                     "in samples where the record has no time",
          .lowest = -kLongestLag,
          .highest = kLongestLag,
-         .longest_step = 0.02,
          .powers = {.cycle = 1},
          .motion = ContactMotion::kLate,
          .unit_by_sample = "samples",
@@ -225,7 +217,6 @@ constexpr std::array kTermRows = {
         .meaning = "g, width of a gap before the contact, which bears no force while it is crossed",
         .lowest = 0.0,
         .highest = kWidestGap,
-        .longest_step = 0.1,
         .powers = kLengthUnit,
         .motion = ContactMotion::kBehindGap,
         .lowest_is_of_theory = true,
@@ -254,7 +245,6 @@ constexpr std::array kTermRows = {
                    "taken from the data",
         .is_of_record = true,
         .presence = Presence::kOffsets,
-        .longest_step = 0.5,
         .powers = kLengthUnit,
     },
     Term{.name = "force_drift",
@@ -289,10 +279,8 @@ constexpr auto kTermsOfDisplacement = [] {
   for (Term& term : terms) {
     if (term.id == TermId::kForceOffset) {
       term.is_linear = false;
-      term.longest_step = 0.5;
     } else if (term.id == TermId::kDisplacementOffset) {
       term.is_linear = true;
-      term.longest_step = 1.5;
     } else if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
     } else if (term.id > TermId::kSlipForce && term.id != TermId::kLoadExponent) {

@@ -46,19 +46,6 @@ CompressedResidual::CompressedResidual(const Eigen::MatrixXd& normal,
 
 namespace {
 
-/// Returns ln of the largest force of a steady loop about its middle, below which Tc has no loop.
-double LeastLogSlipForce(const Problem& problem) {
-  constexpr double kShortOfSlip = 1e-9;
-  double largest = 0.0;
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    if (problem.states[r] != models::InitialState::kSteady) continue;
-    const ScaledRecord& record = problem.data->records[r];
-    const auto [low, high] = std::ranges::minmax(record.excitation());
-    largest = std::max(largest, (high - low) / 2);
-  }
-  return std::log(largest) + kShortOfSlip;  // −∞ where none is steady
-}
-
 /// A column as the problem's functions write it.
 std::span<double> Writable(Eigen::VectorXd& column) {
   return {column.data(), static_cast<std::size_t>(column.size())};
@@ -71,7 +58,6 @@ void ProjectedResidual::Bind(const Problem& problem, Response& response) {
   response_ = &response;
   response.Bind(problem);
   searched_.clear();
-  places_.clear();
   theta_.clear();
   for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
   for (const std::size_t p : problem.parameters.free()) {
@@ -82,10 +68,7 @@ void ProjectedResidual::Bind(const Problem& problem, Response& response) {
       continue;
     }
     theta_[p] = std::clamp(theta_[p], parameter.lower, parameter.upper);
-    places_.push_back(p);
-    searched_.push_back({p, parameter.lower, parameter.upper});
-    if (!is_forced() || p != kSlipForce) continue;
-    searched_.back().lower = std::max(parameter.lower, LeastLogSlipForce(problem));
+    searched_.push_back(p);
   }
   response_values_.resize(static_cast<Eigen::Index>(problem.size()));
   FactoriseColumns();
@@ -102,7 +85,7 @@ void ProjectedResidual::FactoriseColumns() {
   std::vector<std::size_t> eliminated;
   for (std::size_t p = 0; p < theta_.size(); ++p) {
     const Parameter& parameter = problem_->parameters[p];
-    const bool is_searched = std::ranges::find(places_, p) != places_.end();
+    const bool is_searched = std::ranges::find(searched_, p) != searched_.end();
     if (parameter.term->is_linear && !parameter.fixed && !is_searched) eliminated.push_back(p);
   }
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated));
@@ -172,7 +155,7 @@ std::vector<double> ProjectedResidual::Theta() const {
 void ProjectedResidual::MoveTo(std::span<const double> u) {
   bool columns_move = false;
   for (std::size_t j = 0; j < u.size(); ++j) {
-    const std::size_t p = places_[j];
+    const std::size_t p = searched_[j];
     const Term& term = *problem_->parameters[p].term;
     const bool has_column = term.is_linear || !term.shapes.empty();
     columns_move = columns_move || (has_column && theta_[p] != u[j]);
@@ -220,13 +203,13 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   MoveTo(u);
   const auto count = static_cast<Eigen::Index>(u.size());
   derivatives_.resize(response_values_.size(), count);
-  DifferentiateResponse(*problem_, theta_, *response_, places_, Writable(response_values_),
+  DifferentiateResponse(*problem_, theta_, *response_, searched_, Writable(response_values_),
                         {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
   const double cost = Regress(std::exp(LogScaleAt(*problem_, theta_)));
   derivatives_ *= scale_;
   const std::vector<double> theta = Theta();
   double* column = derivatives_.data();
-  for (const std::size_t p : places_) {
+  for (const std::size_t p : searched_) {
     AddDerivativeOfColumns(*problem_, p, theta, {column, problem_->size()});
     column += problem_->size();
   }
@@ -235,7 +218,7 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   gradient_ = derivatives_.transpose() * residual_;
   normal_ = derivatives_.transpose() * derivatives_;
   for (Eigen::Index j = 0; j < count; ++j) {
-    const Parameter& parameter = problem_->parameters[places_[static_cast<std::size_t>(j)]];
+    const Parameter& parameter = Searched(static_cast<std::size_t>(j));
     const double weight = parameter.prior_root_weight * parameter.prior_root_weight;
     normal_(j, j) += weight;
     gradient_[j] += weight * (u[static_cast<std::size_t>(j)] - parameter.prior_theta);

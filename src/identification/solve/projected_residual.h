@@ -34,13 +34,6 @@ struct CompressedResidual {
   Eigen::MatrixXd jacobian;
 };
 
-/// A parameter that is searched, and the bounds of its θ.
-struct SearchedParameter {
-  std::size_t parameter;
-  double lower;
-  double upper;
-};
-
 /// The residual of a problem after variable projection (Golub & Pereyra 2003): linear parameters
 /// take their least-squares values at every point, and the residual depends on the others alone.
 /// Its Jacobian is Kaufman's: the derivatives of the response, orthogonal to the columns that are
@@ -55,7 +48,11 @@ class ProjectedResidual {
   /// Moves a parameter that the problem holds.
   void HoldAt(std::size_t parameter, double theta);
 
-  [[nodiscard]] std::span<const SearchedParameter> searched() const { return searched_; }
+  /// Positions of what is searched among the parameters.
+  [[nodiscard]] std::span<const std::size_t> searched() const { return searched_; }
+  [[nodiscard]] const Parameter& Searched(std::size_t j) const {
+    return problem_->parameters[searched_[j]];
+  }
   [[nodiscard]] const Problem& problem() const { return *problem_; }
 
   /// Returns the sum of the squared weighted residuals; infinity where they are not finite.
@@ -84,8 +81,7 @@ class ProjectedResidual {
 
   const Problem* problem_ = nullptr;
   Response* response_ = nullptr;
-  std::vector<SearchedParameter> searched_;
-  std::vector<std::size_t> places_;  // of these among the parameters
+  std::vector<std::size_t> searched_;
   std::vector<double> theta_;        // of what is not eliminated
   std::vector<std::size_t> linear_;  // what is, as far as their columns are independent
   Eigen::VectorXd weight_;

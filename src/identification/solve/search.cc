@@ -78,13 +78,11 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   }
   // Virgin contacts unloaded at their first samples, where the search has led away from these: a
   // thinned record of much noise may have.
-  std::vector<std::size_t> origins;
   std::vector<double> at_first = solution;
   bool has_moved = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const std::size_t origin = parameters.PositionOfOrigin(r);
     if (parameters[origin].fixed) continue;
-    origins.push_back(origin);
     at_first[origin] = problem.data->records[r].excitation().front();
     has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
   }
@@ -103,9 +101,6 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   const auto step = [&](std::size_t p, double by) { neighbours.emplace_back(solution)[p] += by; };
   step(kShape, kSharp);
   for (const double by : {-0.2, -0.1, -0.03, 0.03, 0.1, 0.2}) step(kStiffness, by);
-  for (const std::size_t origin : origins) {
-    for (const double by : {-0.05, 0.05}) step(origin, by);
-  }
   return neighbours;
 }
 

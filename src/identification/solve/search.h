@@ -31,8 +31,8 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 ///
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
 /// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
-/// is tried unloaded at the first sample, at the centre of the record and at displacement zero; a
-/// rig of unknown stiffness at some ratios to the contact's. The best of each α, or where α is held
+/// is unloaded at the first sample, a rig of unknown stiffness tried at some ratios to the
+/// contact's. The best of each α, or where α is held
 /// of each third of the plane, goes on to the minimum of the thinned record.
 /// @param rival  look of another initial state; of looks ten times as dear the best alone is
 ///   followed. Infinite where there is none

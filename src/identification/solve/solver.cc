@@ -19,10 +19,9 @@ constexpr double kLastStep = 1e-8;
 
 /// ceres::TinySolver with what the searches of one start share.
 ///
-/// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
-/// stops by the absolute change of the cost. Its cost functor therefore
+/// TinySolver has no bounds, evaluates a trial without its Jacobian, and stops by the absolute
+/// change of the cost. Its cost functor therefore
 /// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
-/// - refuses a trial that moves a coordinate further than one step may;
 /// - linearises a trial at once, as an accepted one is linearised next;
 /// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
 ///   the function tolerance.
@@ -49,7 +48,7 @@ class TinySearch {
   /// True if the last step gained next to nothing of what was left to gain: it was damped too much.
   [[nodiscard]] bool is_damped() const {
     return tiny_.summary.status == Tiny::COST_CHANGE_TOO_SMALL &&
-           compressed_.Explained() > kLastStep * at_.cost;
+           compressed_.Explained() > std::max(kLastStep, options_.function_tolerance) * at_.cost;
   }
   /// True if the residual was evaluated where the run ended last.
   [[nodiscard]] bool IsEvaluated() const { return at_.u == trial_.u; }
@@ -90,7 +89,6 @@ class TinySearch {
   };
 
   [[nodiscard]] Point Within(const Eigen::VectorXd& x) const;
-  [[nodiscard]] bool IsTooLong(const Eigen::VectorXd& x) const;
   double Try(const Eigen::VectorXd& x);
   void Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
               Eigen::Map<Eigen::MatrixXd> columns);
@@ -101,9 +99,8 @@ class TinySearch {
   Eigen::Index count_;
   double floor_;  // of the cost: below it residuals are rounding errors
   Tiny tiny_;
-  Point at_;             // the accepted one
-  Point trial_;          // the last evaluated one
-  Eigen::VectorXd raw_;  // the accepted one as TinySolver has it
+  Point at_;     // the accepted one
+  Point trial_;  // the last evaluated one
   std::vector<unsigned char> clamped_;
   CompressedResidual compressed_;  // at the accepted one
   bool is_last_ = false;           // is the next accepted step the last one?
@@ -115,20 +112,10 @@ class TinySearch {
 TinySearch::Point TinySearch::Within(const Eigen::VectorXd& x) const {
   Point point{x};
   for (Eigen::Index j = 0; j < count_; ++j) {
-    const SearchedParameter& searched = residual_.searched()[static_cast<std::size_t>(j)];
+    const Parameter& searched = residual_.Searched(static_cast<std::size_t>(j));
     point.u[j] = std::clamp(x[j], searched.lower, searched.upper);
   }
   return point;
-}
-
-bool TinySearch::IsTooLong(const Eigen::VectorXd& x) const {
-  for (Eigen::Index j = 0; j < count_; ++j) {
-    const std::size_t p = residual_.searched()[static_cast<std::size_t>(j)].parameter;
-    const double unit = p == kShape ? std::max(1.0, raw_[j]) : 1.0;
-    const double longest = residual_.problem().parameters[p].term->longest_step * unit;
-    if (std::abs(x[j] - raw_[j]) > longest) return true;
-  }
-  return false;
 }
 
 void TinySearch::CountAccepted() {
@@ -143,7 +130,7 @@ void TinySearch::CountAccepted() {
 
 /// @returns the root of the cost, or of one by which a trial is refused
 double TinySearch::Try(const Eigen::VectorXd& x) {
-  if (!x.allFinite() || IsTooLong(x)) return kRefused;
+  if (!x.allFinite()) return kRefused;
   trial_ = Within(x);
   const std::span<const double> u(trial_.u.data(), clamped_.size());
   trial_.is_linearised = !is_last_;
@@ -167,7 +154,6 @@ void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> ro
     trial_.cost = residual_.Linearise({trial_.u.data(), clamped_.size()});
     trial_.is_linearised = true;
   }
-  raw_ = x;
   at_ = trial_;
   columns.setZero();
   rows[count_] = std::sqrt(at_.cost);
@@ -175,10 +161,10 @@ void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> ro
   if (!at_.is_linearised) return;  // that was the last step: a zero gradient ends the search
   for (Eigen::Index j = 0; j < count_; ++j) {
     const auto k = static_cast<std::size_t>(j);
-    const auto& [p, lower, upper] = residual_.searched()[k];
+    const Parameter& searched = residual_.Searched(k);
     const double slope = residual_.gradient()[j];
-    const bool below = x[j] <= lower && (x[j] < lower || slope > 0);
-    const bool above = x[j] >= upper && (x[j] > upper || slope < 0);
+    const bool below = x[j] <= searched.lower && (x[j] < searched.lower || slope > 0);
+    const bool above = x[j] >= searched.upper && (x[j] > searched.upper || slope < 0);
     clamped_[k] = below || above ? 1 : 0;
   }
   compressed_ = CompressedResidual(residual_.normal(), residual_.gradient(), at_.cost, clamped_);
@@ -203,14 +189,20 @@ void TinySearch::Run(std::span<double> u) {
   Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(u.data(), count_);
   tiny_.Solve(Function{this}, &point);
   // A step that ends the search is not accepted by a call.
-  if (raw_ != point) at_ = trial_;
+  if (at_.u != Within(point).u) at_ = trial_;
   std::ranges::copy(at_.u, u.begin());
+}
+
+/// Returns on which side of its bounds each parameter lies; one that is held lies inside.
+std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta) {
+  std::vector<BoundSide> sides(theta.size(), BoundSide::kInside);
+  for (const std::size_t p : parameters.free()) sides[p] = SideOf(parameters[p], theta[p]);
+  return sides;
 }
 
 bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
   for (std::size_t j = 0; j < u.size(); ++j) {
-    const SearchedParameter& searched = residual.searched()[j];
-    if (SideOf(u[j], searched.lower, searched.upper) != BoundSide::kInside) return true;
+    if (SideOf(residual.Searched(j), u[j]) != BoundSide::kInside) return true;
   }
   return false;
 }
@@ -271,10 +263,7 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   solution.report.termination = ceres::TerminationTypeToString(summary.termination_type);
   solution.report.message = summary.message;
   solution.report.iterations += static_cast<int>(summary.iterations.size());
-  solution.side.assign(theta.size(), BoundSide::kInside);
-  for (const std::size_t p : problem.parameters.free()) {
-    solution.side[p] = SideOf(problem.parameters[p], theta[p]);
-  }
+  solution.side = SidesAt(problem.parameters, theta);
 }
 
 void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
@@ -310,9 +299,7 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
     report = within.report;
     solution.converged = solution.converged || within.converged;
     std::vector<double> point;
-    for (const SearchedParameter& searched : residual_.searched()) {
-      point.push_back(within.theta[searched.parameter]);
-    }
+    for (const std::size_t p : residual_.searched()) point.push_back(within.theta[p]);
     const double cost_within = residual_.Evaluate(point);
     is_evaluated = cost_within < cost;
     if (is_evaluated) {
@@ -327,11 +314,10 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
 void Solver::Solve(std::span<const double> start, const SolverOptions& options,
                    Solution& solution) {
   const Parameters& parameters = residual_.problem().parameters;
-  const std::span<const SearchedParameter> searched = residual_.searched();
   solution.report.iterations = 0;
   std::vector<double> u;
-  for (const auto& [p, lower, upper] : searched) {
-    u.push_back(std::clamp(start[p], lower, upper));
+  for (const std::size_t p : residual_.searched()) {
+    u.push_back(std::clamp(start[p], parameters[p].lower, parameters[p].upper));
   }
   if (u.empty()) {
     solution.sum_of_squares = residual_.Evaluate(u);
@@ -345,14 +331,7 @@ void Solver::Solve(std::span<const double> start, const SolverOptions& options,
   solution.theta = residual_.Theta();
   solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
-  solution.side.assign(parameters.size(), BoundSide::kInside);
-  for (const std::size_t p : parameters.free()) {
-    solution.side[p] = SideOf(parameters[p], solution.theta[p]);
-  }
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    solution.theta[searched[j].parameter] = u[j];
-    solution.side[searched[j].parameter] = SideOf(u[j], searched[j].lower, searched[j].upper);
-  }
+  solution.side = SidesAt(parameters, solution.theta);
 }
 
 }  // namespace mindahl::identification

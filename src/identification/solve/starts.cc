@@ -77,10 +77,18 @@ class Plane {
   }
 
   /// The best looks of those that compete: of one α, or where α is held of one third of the
-  /// reaches.
-  /// @param theta     with the contacts unloaded somewhere
+  /// reaches; those that lead anywhere. Contacts are unloaded at their first samples.
   /// @param hopeless  cost beyond which Mindlin's row says enough
-  std::vector<Look> From(std::vector<double> theta, double hopeless) {
+  std::vector<Look> FromAll(double hopeless) {
+    std::vector<double> theta;
+    for (const Parameter& of : problem_.parameters) {
+      theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
+    }
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      const std::size_t origin = problem_.parameters.PositionOfOrigin(r);
+      if (problem_.parameters[origin].fixed) continue;
+      theta[origin] = problem_.data->records[r].excitation().front();
+    }
     constexpr std::size_t kThirds = 3;
     constexpr double kNear = 4.0;
     const Parameters& parameters = problem_.parameters;
@@ -107,6 +115,7 @@ class Plane {
         }
       }
     }
+    std::erase_if(best, [](const Look& look) { return !std::isfinite(look.cost); });
     return best;
   }
 
@@ -126,32 +135,6 @@ class Plane {
         }
       }
     }
-  }
-
-  /// Returns θ with contacts unloaded at their first samples, at the centres of the records, and at
-  /// the file's zero, where these differ.
-  [[nodiscard]] std::vector<std::vector<double>> Guesses() const {
-    std::vector<std::vector<double>> guesses;
-    for (const int place : {0, 1, 2}) {
-      std::vector<double> theta;
-      for (const Parameter& of : problem_.parameters) {
-        theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
-      }
-      bool is_inside = true;
-      for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-        const std::size_t p = problem_.parameters.PositionOfOrigin(r);
-        const Parameter& origin = problem_.parameters[p];
-        if (origin.fixed) continue;
-        theta[p] = place == 0   ? problem_.data->records[r].excitation().front()
-                   : place == 1 ? 0.0
-                                : origin.ToTheta(0.0);
-        is_inside = is_inside && (place < 2 || std::abs(theta[p]) <= 1);
-      }
-      if (is_inside && std::ranges::find(guesses, theta) == guesses.end()) {
-        guesses.push_back(std::move(theta));
-      }
-    }
-    return guesses;
   }
 
  private:
@@ -273,14 +256,7 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
   const Problem thin{&data, problem.model, problem.states, problem.parameters};
   solver.Bind(thin);
   Plane plane(thin, solver);
-  // The first guess from which a look leads anywhere. Looks of several are not compared: this far
-  // from the minimum the better one often leads to the worse minimum.
-  std::vector<Look> looks;
-  for (std::vector<double>& guess : plane.Guesses()) {
-    looks = plane.From(std::move(guess), kBeyondRival * rival);
-    std::erase_if(looks, [](const Look& look) { return !std::isfinite(look.cost); });
-    if (!looks.empty()) break;
-  }
+  std::vector<Look> looks = plane.FromAll(kBeyondRival * rival);
   for (Look& look : looks) plane.LookForTerms(look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.

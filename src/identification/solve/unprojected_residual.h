@@ -11,9 +11,9 @@
 
 namespace mindahl::identification {
 
-/// The weighted residuals of a problem, model − measured over a unit, of every sample, as a function
-/// of θ with the analytic Jacobian. With a loss each residual r is sgn(r)·√ρ(r²), of which half the
-/// square is the loss.
+/// The weighted residuals of a problem, model − measured over a unit, of every sample, as a
+/// function of θ with the analytic Jacobian. With a loss each residual r is sgn(r)·√ρ(r²), of which
+/// half the square is the loss.
 class UnprojectedResidual final : public ceres::CostFunction {
  public:
   /// @param problem  must outlive this
