@@ -26,34 +26,21 @@ Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, dou
                0.01);
 }
 
-FitOptions OptionsOf(const std::string& model, const std::string& term) {
+FitOptions OptionsOf(const std::string& model, std::string_view group) {
   FitOptions options{.model = &Model(model),
                      .initial_states = {InitialState::kVirgin},
                      .preparation = {.force_sense = 1}};
-  if (!term.empty()) options.terms = {term};
-  // The exponent of a force of the speed, or of a slip force of the speed, needs its factor.
-  if (term == "speed_exponent") options.terms.emplace_back("viscous");
-  if (term == "slip_speed_exponent") options.terms.emplace_back("slip_speed");
-  if (term == "ripple_period") {
-    for (const char* factor :
-         {"ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down", "ripple_sine_down"}) {
-      options.terms.emplace_back(factor);
-    }
-  }
+  if (group.empty()) return options;
+  const std::vector<std::string_view>& terms = FindTermGroup(group)->terms;
+  options.terms.assign(terms.begin(), terms.end());
   return options;
 }
 
 /// The terms that a fit may be asked for; "" for the law alone.
-std::vector<std::string> TermsToAskFor() {
-  std::vector<std::string> terms = {""};
-  for (const Term& term : Terms()) {
-    const bool is_asked = term.presence == Presence::kOnDemand ||
-                          (term.presence == Presence::kReported && term.needs_time) ||
-                          term.name == "force_drift";
-    // A further coefficient of a term is fitted with it.
-    if (is_asked && !term.of_column && !term.group.empty()) terms.emplace_back(term.name);
-  }
-  return terms;
+std::vector<std::string_view> TermsToAskFor() {
+  std::vector<std::string_view> names = {""};
+  for (const TermGroup& group : TermGroups()) names.push_back(group.name);
+  return names;
 }
 
 class OfEveryLaw : public ::testing::TestWithParam<const char*> {};
@@ -62,7 +49,7 @@ TEST_P(OfEveryLaw, GradientsAgreeWithDifferences) {
   const std::string model = GetParam();
   const Record record = TimedLoop(model, 0.7, 3);
   const RecordView view(record);
-  for (const std::string& term : TermsToAskFor()) {
+  for (const std::string_view term : TermsToAskFor()) {
     SCOPED_TRACE(term);
     const FitOptions options = OptionsOf(model, term);
     Fitter fitter(options);

@@ -30,8 +30,7 @@ TEST(Terms, EveryRowIsComplete) {
     // A term that leads a group is asked for.
     const bool is_asked_for =
         term.presence == Presence::kOnDemand || term.presence == Presence::kReported;
-    // A further coefficient of a term is asked for with it.
-    EXPECT_TRUE(term.group.empty() || is_asked_for);
+    EXPECT_TRUE(!LeadsGroup(term) || is_asked_for);
     EXPECT_EQ(FindTerm(term.name), &term);
   }
 }

@@ -118,8 +118,6 @@ struct Term {
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
-  /// Name of the group of terms that it leads, as `--terms` takes it; empty: it comes with another.
-  std::string_view group = {};
 
   /// Returns the scale of the values, in the unit of the parameter.
   [[nodiscard]] double scale(const TermUnits& units) const;
@@ -147,13 +145,16 @@ const Term* TermOfParameter(std::string_view parameter);
 /// A term, or a few that belong together, that a record may require.
 struct TermGroup {
   std::string_view name;
-  std::vector<std::string_view> terms;  ///< names in FitOptions::terms
+  std::vector<std::string_view> terms;  ///< names in FitOptions::terms; the first one leads it
   std::string_view meaning;             ///< in a line of the help
   bool is_tried = true;                 ///< false if it is added only where it is named
 };
 
 /// Returns the terms that can be added, apart from covariates; `--terms` takes these names.
 std::span<const TermGroup> TermGroups();
+
+/// True if it is the first of a group: the others come with it.
+bool LeadsGroup(const Term& term);
 
 /// Returns nullptr where there is none of that name.
 const TermGroup* FindTermGroup(std::string_view name);

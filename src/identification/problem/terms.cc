@@ -52,19 +52,18 @@ constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning) {
 }
 
 /// Makes a change of the slip force over the position or time.
-constexpr Term SlipChange(std::string_view name, std::string_view meaning, std::string_view group) {
+constexpr Term SlipChange(std::string_view name, std::string_view meaning) {
   return {.name = name,
           .meaning = meaning,
           .lowest = -kLargestSlipChange,
           .highest = kLargestSlipChange,
-          .start = 0.0,
-          .group = group};
+          .start = 0.0};
 }
 
 /// Makes an exponent of the speed, of a force that another term scales.
 constexpr Term Exponent(std::string_view name, std::string_view meaning, std::string_view needs,
-                        std::string_view group, double lowest, bool lowest_is_of_theory,
-                        bool highest_is_of_theory = false, std::string_view shapes = {}) {
+                        double lowest, bool lowest_is_of_theory, bool highest_is_of_theory = false,
+                        std::string_view shapes = {}) {
   return {.name = name,
           .meaning = meaning,
           .lowest = lowest,
@@ -74,8 +73,7 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
           .shapes = shapes,
           .needs = needs,
           .lowest_is_of_theory = lowest_is_of_theory,
-          .highest_is_of_theory = highest_is_of_theory,
-          .group = group};
+          .highest_is_of_theory = highest_is_of_theory};
 }
 
 constexpr std::array kTermRows = {
@@ -107,8 +105,7 @@ constexpr std::array kTermRows = {
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
-         .powers = kStiffnessUnit,
-         .group = "rig_stiffness"},
+         .powers = kStiffnessUnit},
     Term{.name = "load_exponent",
          .meaning = "p of σ ∝ N^p, for records whose loads differ",
          .presence = Presence::kLoadSeries,
@@ -118,39 +115,34 @@ constexpr std::array kTermRows = {
          .meaning = "A of slip forces Tc(1 + A) where the displacement grows and Tc(1 − A) where "
                     "it falls; slip_force is their mean",
          .lowest = -kLargestAsymmetry,
-         .highest = kLargestAsymmetry,
-         .group = "asymmetry"},
+         .highest = kLargestAsymmetry},
     Term{.name = "plateau_slope",
          .unit = "N/m",
          .meaning = "slope of an additional force slope·δ",
          .powers = kStiffnessUnit,
-         .is_linear = true,
-         .group = "plateau_slope"},
+         .is_linear = true},
     Term{.name = "viscous",
          .unit = "N s/m",
          .meaning = "C of an additional force C·dδ/dt",
          .powers = {.force = 1, .length = -1, .time = 1},
          .is_linear = true,
          .needs_time = true,
-         .is_never_negative = true,
-         .group = "viscous"},
+         .is_never_negative = true},
     Exponent("speed_exponent",
              "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
              "the viscous force",
-             "viscous", "speed_exponent", kLeastSpeedExponent, false, false, "viscous"),
+             "viscous", kLeastSpeedExponent, false, false, "viscous"),
     Term{.name = "inertia",
          .unit = "kg",
          .meaning = "M of an additional force M·d²δ/dt²",
          .powers = {.force = 1, .length = -1, .time = 2},
          .is_linear = true,
          .needs_time = true,
-         .is_never_negative = true,
-         .group = "inertia"},
+         .is_never_negative = true},
     SlipChange("slip_slope",
                "m₁ of a slip force Tc(1 + m₁ξ + m₂ξ²), ξ the position, ±1 at the ends of the "
-               "widest stroke",
-               "slip_position"),
-    SlipChange("slip_curvature", "m₂, likewise", ""),
+               "widest stroke"),
+    SlipChange("slip_curvature", "m₂, likewise"),
     Term{.name = "slip_speed",
          .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
                     "third of the strokes, at which Tc is that of the fit",
@@ -160,13 +152,11 @@ constexpr std::array kTermRows = {
          .start = 0.3,
          .needs = "slip_speed_exponent",
          .highest_is_of_theory = true},
-    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", "slip_speed",
-             kLeastSlipSpeedExponent, true),
+    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", kLeastSlipSpeedExponent, true),
     SlipChange(
         "slip_trend",
         "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 at its "
-        "end; the sample's number where there is no time",
-        "slip_trend"),
+        "end; the sample's number where there is no time"),
     Term{.name = "drag_fraction",
          .meaning = "d of a force Tc((1 − d)·t + d(v/v₀)^m) whose part d acts along the motion and "
                     "has no memory, t the contact's force over Tc, v₀ as for slip_speed",
@@ -177,7 +167,7 @@ constexpr std::array kTermRows = {
          .needs = "drag_exponent",
          .lowest_is_of_theory = true,
          .highest_is_of_theory = true},
-    Exponent("drag_exponent", "m, likewise", "drag_fraction", "", kLeastSpeedExponent, true, true),
+    Exponent("drag_exponent", "m, likewise", "drag_fraction", kLeastSpeedExponent, true, true),
     Term{.name = "plateau_curvature",
          .unit = "N/m²",
          .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
@@ -193,8 +183,7 @@ constexpr std::array kTermRows = {
          .powers = kLengthUnit,
          .start = 0.0,
          .shapes = "ripple_",
-         .needs = "ripple_cosine_up",
-         .group = "ripple"},
+         .needs = "ripple_cosine_up"},
     FactorOfRipple("ripple_cosine_up",
                    "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
                    "first record"),
@@ -209,8 +198,7 @@ constexpr std::array kTermRows = {
          .highest = kLongestLag,
          .powers = {.cycle = 1},
          .motion = ContactMotion::kLate,
-         .unit_by_sample = "samples",
-         .group = "lag"},
+         .unit_by_sample = "samples"},
     Term{
         .name = "backlash",
         .unit = "m",
@@ -219,8 +207,7 @@ constexpr std::array kTermRows = {
         .highest = kWidestGap,
         .powers = kLengthUnit,
         .motion = ContactMotion::kBehindGap,
-        .lowest_is_of_theory = true,
-        .group = "backlash"},
+        .lowest_is_of_theory = true},
     Term{.name = "covariate",
          .unit = "N/unit",
          .meaning = "C of an additional force C·column, one for each named column: "
@@ -229,8 +216,7 @@ constexpr std::array kTermRows = {
                     "column's range",
          .powers = kFileForceUnit,
          .is_linear = true,
-         .of_column = true,
-         .group = "covariate"},
+         .of_column = true},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "force added to the model's; with a drift, its value at the record's middle",
@@ -253,8 +239,7 @@ constexpr std::array kTermRows = {
          .is_of_record = true,
          .presence = Presence::kReported,
          .powers = {.force = 1, .time = -1, .of_file = true},
-         .is_linear = true,
-         .group = "force_drift"},
+         .is_linear = true},
     Term{.name = "displacement_drift",
          .unit = "m/s",
          .meaning = "rate of a displacement linear in time, where the displacement is fitted; in m "
@@ -358,6 +343,11 @@ const TermGroup* FindTermGroup(std::string_view name) {
   const std::span<const TermGroup> groups = TermGroups();
   const auto group = std::ranges::find(groups, name, &TermGroup::name);
   return group == groups.end() ? nullptr : &*group;
+}
+
+bool LeadsGroup(const Term& term) {
+  return std::ranges::any_of(
+      TermGroups(), [&](const TermGroup& group) { return group.terms.front() == term.name; });
 }
 
 std::string_view TermNameOf(std::string_view parameter) {

@@ -22,7 +22,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   for (const std::size_t p : parameters.free()) {
     // Further coefficients of a group stay with the one that leads it, an exponent with its factor.
     const Term& term = *parameters[p].term;
-    const bool leads = !term.group.empty() || term.start.value_or(0.0) != 0;
+    const bool leads = term.of_column || LeadsGroup(term);
     const bool is_on_demand = term.presence == Presence::kOnDemand && leads;
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
