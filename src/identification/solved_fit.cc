@@ -78,7 +78,10 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  ThinnedRecords thin(attempt.data);
+  // A fit that is given its start looks for none.
+  std::optional<ScaledRecords> thinned;
+  if (options.start.empty()) thinned = Thinned(attempt.data);
+  const ScaledRecords& thin = thinned ? *thinned : attempt.data;
   const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, thin, options, attempt.solver);
     Descend(candidate, options, attempt.solver);

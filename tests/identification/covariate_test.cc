@@ -84,14 +84,19 @@ TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
   EXPECT_THAT(RefusalOf({shorter}, options), HasSubstr("p"));
 }
 
-TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
+TEST(Covariate, OfOneChannelInTwoUnitsAreNotIdentifiable) {
   Record record = LoopBesideTwo();
   record.covariates.push_back(
       {.name = "volts", .unit = "V", .values = record.covariates[0].values});
   for (double& value : record.covariates.back().values) value = 0.5 - 0.02 * value;
-  EXPECT_THAT(RefusalOf({record}, {.covariates = {"p", "volts"}}),
-              HasSubstr("'volts' is a linear function of 'p'"));
-  record.covariates.back().values = record.force;
+  const FitResult fit = Fit({&record, 1}, {.covariates = {"p", "volts"}});
+  EXPECT_FALSE(fit.Find("covariate_p")->is_known());
+  EXPECT_FALSE(fit.Find("covariate_volts")->is_known());
+}
+
+TEST(Covariate, IsRefusedIfItIsTheForce) {
+  Record record = LoopBesideTwo();
+  record.covariates.push_back({.name = "volts", .unit = "V", .values = record.force});
   EXPECT_THAT(RefusalOf({record}, {.covariates = {"volts"}}),
               HasSubstr("'volts' is a linear function of 'force'"));
 }

@@ -108,8 +108,7 @@ TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
   Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});
-  ThinnedRecords thinned(stages.data);
-  const ScaledRecords& thin = thinned.Get();
+  const ScaledRecords thin = Thinned(stages.data);
   ASSERT_EQ(thin.records.size(), 2U);
   std::size_t counted = 0;
   for (std::size_t r = 0; r < 2; ++r) {

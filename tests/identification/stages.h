@@ -49,7 +49,7 @@ class Stages {
 
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
-    identification::ThinnedRecords thin(data);
+    const identification::ScaledRecords thin = identification::Thinned(data);
     identification::Candidate candidate(data, options, problem.states);
     identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
                                  solver);

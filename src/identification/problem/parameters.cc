@@ -24,7 +24,6 @@ namespace {
 /// forces what a cubic over the position leaves.
 double StartingPeriod(const ScaledRecords& data) {
   constexpr Eigen::Index kFrequencies = 391;  // a fifth of what a stroke resolves apart
-  constexpr std::size_t kMostSamples = 500;
   constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
   const Eigen::ArrayXd frequencies = Eigen::ArrayXd::LinSpaced(kFrequencies, 1.0, 40.0);
   Eigen::ArrayXd power = Eigen::ArrayXd::Zero(kFrequencies);
@@ -41,12 +40,10 @@ double StartingPeriod(const ScaledRecords& data) {
         }
       }
     }
-    const std::size_t every = 1 + sliding.size() / 2 / kMostSamples;
-    const std::size_t count = (sliding.size() / 2 + every - 1) / every;
+    const std::size_t count = sliding.size() / 2;
     if (count < kFewest) continue;
-    const Eigen::Map<const Eigen::Matrix2Xd, 0, Eigen::OuterStride<>> some(
-        sliding.data(), 2, static_cast<Eigen::Index>(count),
-        Eigen::OuterStride<>(static_cast<Eigen::Index>(2 * every)));
+    const Eigen::Map<const Eigen::Matrix2Xd> some(sliding.data(), 2,
+                                                  static_cast<Eigen::Index>(count));
     const Eigen::ArrayXd position = some.row(0);
     Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(position.size(), 4);
     for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).array() * position;

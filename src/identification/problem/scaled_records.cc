@@ -323,32 +323,27 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
         column.push_back((value - reference_value) / scale);
       }
     }
-    for (std::size_t other = 0; other <= own; ++other) {
-      const bool is_force = other == own;
-      if (is_force && options.fixed.contains(NameOfCovariate(name))) continue;
-      const auto is_one = [&](const ScaledRecord& record) {
-        return AreOneChannel(record.covariates[own],
-                             is_force ? record.force : record.covariates[other]);
-      };
-      if (!std::ranges::all_of(data.records, is_one)) continue;
-      throw InvalidArgument(
-          fmt::format("the covariate '{}' is a linear function of '{}', one channel with it: leave "
-                      "one of them out",
-                      name, is_force ? "force" : options.covariates[other]));
-    }
+    if (options.fixed.contains(NameOfCovariate(name))) continue;
+    const auto is_force = [own](const ScaledRecord& record) {
+      return AreOneChannel(record.covariates[own], record.force);
+    };
+    if (!std::ranges::all_of(data.records, is_force)) continue;
+    throw InvalidArgument(
+        fmt::format("the covariate '{}' is a linear function of 'force', one channel with it: "
+                    "leave it out",
+                    name));
   }
 }
 
-const ScaledRecords& ThinnedRecords::Get() {
-  if (thin_) return *thin_;
+ScaledRecords Thinned(const ScaledRecords& data) {
   // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
   constexpr double kKeptOfAStroke = 8.0;
   // Strokes that are thinned so: more are thinned to their ends and one sample in between.
   constexpr std::size_t kDenseStrokes = 16;
-  thin_ = data_;
-  thin_->counted = 0;
-  for (std::size_t r = 0; r < data_.records.size(); ++r) {
-    const ScaledRecord& record = data_.records[r];
+  ScaledRecords thinned = data;
+  thinned.counted = 0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
     const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
     // Under a load that varies the path between samples is part of the history.
     const bool is_dense = strokes.size() <= kDenseStrokes || !record.load_ratio.empty();
@@ -368,12 +363,12 @@ const ScaledRecords& ThinnedRecords::Get() {
       if (end > begin) samples.push_back(end);
       if (turns.size() < record.reversals.size()) turns.push_back(samples.size() - 1);
     }
-    ScaledRecord& thin = thin_->records[r] = record.At(samples);
+    ScaledRecord& thin = thinned.records[r] = record.At(samples);
     thin.reversals = std::move(turns);
     thin.whole = &record;
-    for (const unsigned char counts : thin.counts) thin_->counted += counts;
+    for (const unsigned char counts : thin.counts) thinned.counted += counts;
   }
-  return *thin_;
+  return thinned;
 }
 
 }  // namespace mindahl::identification

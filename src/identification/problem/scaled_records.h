@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -105,7 +104,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 /// speeds), and covariates: each less the middle of its range in the
 /// record, so that the offset of the force keeps its meaning; literally where there are no offsets.
 /// @throws InvalidArgument where a record has no covariate that is fitted, or it never changes, or
-///   two of them are one channel
+///   is the force in other units
 void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
                 ScaledRecords& data);
 
@@ -122,20 +121,10 @@ std::vector<Stroke> StrokesOf(std::span<const double> excitation,
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals);
 
-/// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
-/// same history for a law that knows no rate, at a fraction of the cost. They are made when they
-/// are first asked for: a fit that is given its start never does.
-class ThinnedRecords {
- public:
-  /// @param data  must outlive this
-  explicit ThinnedRecords(const ScaledRecords& data) : data_(data) {}
-
-  const ScaledRecords& Get();
-
- private:
-  const ScaledRecords& data_;
-  std::optional<ScaledRecords> thin_;
-};
+/// Returns the records by fewer samples: all reversals, and of each stroke some, densest at its
+/// start: the same history for a law that knows no rate, at a fraction of the cost.
+/// @param data  must outlive them
+ScaledRecords Thinned(const ScaledRecords& data);
 
 /// Returns the correlation of two columns of one size; 0 where one is constant.
 double ColumnCorrelation(std::span<const double> one, std::span<const double> other);

@@ -13,7 +13,7 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
   return {.max_iterations = options.max_iterations};
 }
 
-void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
+void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned,
                               const FitOptions& options, Solver& solver) {
   constexpr std::size_t kMostNested = 3;
   if (!options.start.empty()) return;

@@ -37,13 +37,13 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// @param rival  look of another initial state; of looks ten times as dear the best alone is
 ///   followed. Infinite where there is none
 /// @returns the least cost there; infinity where none has the sign of the force
-double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
                     double rival, Solver& solver);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,
 /// for at most three terms, from the solutions of the models that they contain in turn.
-void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
+void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned,
                               const FitOptions& options, Solver& solver);
 
 /// Solves from each starting point and keeps the best solution.

@@ -220,18 +220,18 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
 /// But a window or a fold may leave little of them, a column that wanders as it likes explains a
 /// few samples a stroke whatever the law is, and kinks are where samples are.
 const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
-                                    ThinnedRecords& thinned) {
+                                    const ScaledRecords& thinned) {
   constexpr std::size_t kEnough = 4;  // samples a parameter
   const Parameters& parameters = problem.parameters;
   const bool has_covariate = std::ranges::any_of(
       parameters.free(), [&](std::size_t p) { return parameters[p].term->of_column; });
-  const bool is_enough = thinned.Get().counted >= kEnough * parameters.free().size();
-  return is_enough && !has_covariate && !has_kinks ? thinned.Get() : *problem.data;
+  const bool is_enough = thinned.counted >= kEnough * parameters.free().size();
+  return is_enough && !has_covariate && !has_kinks ? thinned : *problem.data;
 }
 
 }  // namespace
 
-double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
                     double rival, Solver& solver) {
   const Problem& problem = candidate.problem;
   std::vector<StartingPoint>& starts = candidate.starts;
