@@ -79,7 +79,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   Solution& solution = candidate.solution;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;
-  FindStartsOf(candidate, data, options, std::numeric_limits<double>::infinity(), solver);
+  FindStartsOf(candidate, data, options, solver);
   const std::vector<double> theta = candidate.starts.front().theta;
   solution.theta = theta;
   Noise noise;

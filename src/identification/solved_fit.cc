@@ -93,10 +93,8 @@ SolvedFit FitBestState(const Attempt& attempt) {
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }
   std::vector<double> costs;  // at the best starts
-  double look = std::numeric_limits<double>::infinity();
   for (Candidate& candidate : candidates) {
-    costs.push_back(FindStartsOf(candidate, thin, options, look, attempt.solver));
-    if (!candidate.starts.empty()) look = candidate.starts.front().look;
+    costs.push_back(FindStartsOf(candidate, thin, options, attempt.solver));
   }
   Candidate& virgin = candidates.front();
   Candidate& steady = candidates.back();

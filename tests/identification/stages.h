@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -51,8 +50,7 @@ class Stages {
   identification::Solution Solve() {
     const identification::ScaledRecords thin = identification::Thinned(data);
     identification::Candidate candidate(data, options, problem.states);
-    identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
-                                 solver);
+    identification::FindStartsOf(candidate, thin, options, solver);
     identification::Descend(candidate, options, solver);
     return candidate.solution;
   }

@@ -31,7 +31,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
     if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;
     Candidate smaller = candidate;
     smaller.problem.parameters.Fix(p, neutral);
-    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), solver);
+    FindStartsOf(smaller, thinned, options, solver);
     if (terms.size() <= kMostNested) {
       AddStartsOfSmallerModels(smaller, thinned, options, solver);
     }

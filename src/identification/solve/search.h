@@ -11,7 +11,6 @@ namespace mindahl::identification {
 struct StartingPoint {
   std::vector<double> theta;  // all parameters
   double cost = 0.0;          // on the thinned record
-  double look = 0.0;          // of the best look there
 };
 
 /// A problem, its best solution, and from where that was found.
@@ -34,11 +33,9 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// is unloaded at the first sample, a rig of unknown stiffness tried at some ratios to the
 /// contact's. The best of each α, or where α is held
 /// of each third of the plane, goes on to the minimum of the thinned record.
-/// @param rival  look of another initial state; of looks ten times as dear the best alone is
-///   followed. Infinite where there is none
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
-                    double rival, Solver& solver);
+                    Solver& solver);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,

@@ -89,6 +89,7 @@ class TinySearch {
   };
 
   [[nodiscard]] Point Within(const Eigen::VectorXd& x) const;
+  [[nodiscard]] bool IsTooLong(const Eigen::VectorXd& u) const;
   double Try(const Eigen::VectorXd& x);
   void Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
               Eigen::Map<Eigen::MatrixXd> columns);
@@ -118,6 +119,18 @@ TinySearch::Point TinySearch::Within(const Eigen::VectorXd& x) const {
   return point;
 }
 
+/// True if a step from the accepted point to u leads out of what its linearisation says.
+bool TinySearch::IsTooLong(const Eigen::VectorXd& u) const {
+  constexpr double kLongest = 1.5;
+  constexpr double kOfBounds = 0.25;  // of their distance
+  for (Eigen::Index j = 0; j < count_; ++j) {
+    const Parameter& searched = residual_.Searched(static_cast<std::size_t>(j));
+    const double longest = std::min(kLongest, kOfBounds * (searched.upper - searched.lower));
+    if (std::abs(u[j] - at_.u[j]) > longest) return true;
+  }
+  return false;
+}
+
 void TinySearch::CountAccepted() {
   constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
   constexpr int kSlowSteps = 20;          // ... in as many steps
@@ -130,7 +143,7 @@ void TinySearch::CountAccepted() {
 
 /// @returns the root of the cost, or of one by which a trial is refused
 double TinySearch::Try(const Eigen::VectorXd& x) {
-  if (!x.allFinite()) return kRefused;
+  if (!x.allFinite() || IsTooLong(Within(x).u)) return kRefused;
   trial_ = Within(x);
   const std::span<const double> u(trial_.u.data(), clamped_.size());
   trial_.is_linearised = !is_last_;

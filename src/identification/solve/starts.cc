@@ -78,8 +78,7 @@ class Plane {
 
   /// The best looks of those that compete: of one α, or where α is held of one third of the
   /// reaches; those that lead anywhere. Contacts are unloaded at their first samples.
-  /// @param hopeless  cost beyond which Mindlin's row says enough
-  std::vector<Look> FromAll(double hopeless) {
+  std::vector<Look> Best() {
     std::vector<double> theta;
     for (const Parameter& of : problem_.parameters) {
       theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
@@ -100,7 +99,7 @@ class Plane {
     const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
     std::vector<Look> best(rows.size());
     const std::size_t count = shape.fixed ? 1 : rows.size();
-    for (std::size_t k = 0; k < count && !(best[0].cost > hopeless && k > 0); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
       const std::vector<double>& reaches = rows[k].reaches;
       theta[kShape] =
           shape.fixed ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
@@ -232,7 +231,7 @@ const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
 }  // namespace
 
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
-                    double rival, Solver& solver) {
+                    Solver& solver) {
   const Problem& problem = candidate.problem;
   std::vector<StartingPoint>& starts = candidate.starts;
   starts.clear();
@@ -240,8 +239,6 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     starts.push_back(std::move(*given));
     return 0.0;
   }
-  // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
-  constexpr double kBeyondRival = 10.0;
   constexpr std::size_t kStartsAmongKinks = 4;
   // The thinned record's minimum is a start only: no digits are asked of it.
   constexpr SolverOptions kRough{.function_tolerance = 1e-2,
@@ -256,7 +253,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   const Problem thin{&data, problem.model, problem.states, problem.parameters};
   solver.Bind(thin);
   Plane plane(thin, solver);
-  std::vector<Look> looks = plane.FromAll(kBeyondRival * rival);
+  std::vector<Look> looks = plane.Best();
   for (Look& look : looks) plane.LookForTerms(look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
@@ -275,14 +272,12 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
       const Parameter& parameter = thin.parameters[p];
       if (parameter.started_by_user) look.theta[p] = parameter.theta;
     }
-    StartingPoint& start =
-        starts.emplace_back(StartingPoint{std::move(look.theta), look.cost, least});
+    StartingPoint& start = starts.emplace_back(StartingPoint{std::move(look.theta), look.cost});
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
     start.theta = scratch.theta;
     start.cost = scratch.sum_of_squares;
-    if (least > kBeyondRival * rival) break;
   }
   std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
   if (starts.size() > most) starts.resize(most);
