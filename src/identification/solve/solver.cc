@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "identification/solve/projected_residual.h"
 #include "identification/solve/unprojected_residual.h"
@@ -319,6 +320,13 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
       std::ranges::copy(point, u.begin());
       cost = cost_within;
     }
+  }
+  for (std::size_t j = 0; j < u.size(); ++j) {  // at a bound is on it
+    const Parameter& searched = residual_.Searched(j);
+    const BoundSide side = SideOf(searched, u[j]);
+    if (side == BoundSide::kInside) continue;
+    const double bound = side == BoundSide::kLower ? searched.lower : searched.upper;
+    is_evaluated = std::exchange(u[j], bound) == bound && is_evaluated;
   }
   if (!is_evaluated) cost = residual_.Evaluate(u);
   solution.sum_of_squares = cost;
