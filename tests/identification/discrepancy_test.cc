@@ -119,6 +119,21 @@ TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
   EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap));
 }
 
+/// Dahl's law of α = 2.5 carries three quarters of Tc at the end of a stroke that looks like slip,
+/// and a drift of a hundredth of Tc is hardly more than noise: neither speaks against Tc.
+TEST(Discrepancy, SlipForceBeyondTheLargestForceIsBelievedOfALawThatFollowsTheRecord) {
+  const BranchLaw law{4e7, 2.5, 40.0};
+  const History displacement = Cycling(Wave::kSine, kReach / 2, 2.25, 200);
+  Record record = MakeRecord(displacement, Respond(Model("dahl"), law, displacement));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += 0.01 * law.slip_force * static_cast<double>(i) / 450;
+  }
+  const FitResult fit = FitNoisy(record, 1, OfModel("dahl"));
+  ASSERT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  ASSERT_LE(fit.WidestRecord().facts.peak_force, 0.8 * law.slip_force);
+  EXPECT_NEAR(fit.Find("slip_force")->value, law.slip_force, 0.03 * law.slip_force);
+}
+
 TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
   const auto slip_force = [](const FitOptions& options) {
     return *FitNoisy(OfPosition(0.1), 1, options).Find("slip_force");

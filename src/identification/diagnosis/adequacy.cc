@@ -71,7 +71,10 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   constexpr const char* kName = "slip_force";
   // Below, nothing says that the model does not follow the record.
   if (result.depth < Depth::kIntervals) return std::nullopt;
-  if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
+  const Thresholds& thresholds = options.thresholds;
+  const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
+                           result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
+  if (is_followed || result.parameters.empty() ||
       result.response == loop::Channel::kDisplacement || result.is_scaled_by_load() ||
       options.bounds.contains(kName) || options.fixed.contains(kName)) {
     return std::nullopt;
@@ -79,7 +82,7 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   const RecordFit& widest = result.WidestRecord();
   const double peak_force = widest.facts.peak_force / widest.load_ratio;
   if (!loop::Slides(widest.facts) ||
-      peak_force >= options.thresholds.mobilised * result.law.slip_force) {
+      peak_force >= thresholds.mobilised * result.law.slip_force) {
     return std::nullopt;
   }
   FitOptions within = options;
