@@ -106,8 +106,8 @@ Shares OfCleanLoops(double memory, double cycles) {
 // Of 200 loops at 5 %, three standard deviations √(0.05·0.95/200) above. Below there is no limit:
 // the chance is Bonferroni's, of two tests and of the best of all causes.
 constexpr double kMostBelow = 0.05 + 3 * 0.0154;
-// At 1.5 %, likewise.
-constexpr double kMostDoubted = 0.015 + 3 * 0.0086;
+// At 0.5 %, likewise.
+constexpr double kMostDoubted = 0.005 + 3 * 0.005;
 
 TEST(Adequacy, OfLoopsWithWhiteOrAutocorrelatedNoiseIsSeldomDoubted) {
   for (const auto& [memory, cycles] : {std::pair{0.0, 2.0}, {0.9, 4.0}}) {

@@ -185,7 +185,7 @@ const std::vector<Row>& Cases() {
        }},
       {&Thresholds::doubt,
        [](const Thresholds& t) {
-         return IsDoubted(t, kBelow * 0.015) && !IsDoubted(t, kAbove * 0.015);
+         return IsDoubted(t, kBelow * 0.005) && !IsDoubted(t, kAbove * 0.005);
        }},
       {&Thresholds::rare_chance,
        [](const Thresholds& t) {

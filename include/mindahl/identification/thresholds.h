@@ -16,8 +16,9 @@ struct Thresholds {
   /// [σ/k] A contact stiffer than this is taken as rigid. The contact then takes 3 % of the travel
   /// before slip: the loop is that of a Jenkins element, whatever α.
   double rigid_beside_rig = 30.0;
-  /// [rms over half gap or T*] A smaller misfit may be noise however long that remembers. Two per
-  /// cent of the force are visible next to the loop's line in a plot.
+  /// [rms over half gap or T*] A smaller misfit may be noise however long that remembers, and does
+  /// not speak against a slip force beyond the largest force. Two per cent of the force are visible
+  /// next to the loop's line in a plot.
   double poor_misfit = 0.02;
   /// [missed over half gap or T*] A model that misses more is indicative, not quantitative.
   /// Repeated tests of one seal differ by as much.
@@ -57,9 +58,9 @@ struct Thresholds {
   /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
   /// by less than 1 % of Tc.
   double jenkins_shape = 0.01;
-  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in
-  /// seventy is doubted.
-  double doubt = 0.015;
+  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
+  /// hundred is doubted.
+  double doubt = 0.005;
   /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
   /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
   /// those of another minimum or a worse term. Noise by pure error or by neighbours is known to a
