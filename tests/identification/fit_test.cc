@@ -139,6 +139,18 @@ TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
   EXPECT_THAT(finding->parameters, ::testing::ElementsAre("sigma"));
 }
 
+TEST(Fit, ParameterWithoutEffectMayBeTheOnlyOneThatIsFitted) {
+  FitOptions options = OfModel("mindlin-dahl");
+  options.offsets = false;
+  options.terms = {"viscous", "speed_exponent"};
+  options.fixed = {{"sigma", 4e7}, {"alpha", 0.3}, {"slip_force", 40.0}, {"viscous", 0.0}};
+  Record loop = testing::LoopOf({4e7, 0.5, 40.0}, Cycling(Wave::kSine, 3e-6, 2.0, 40));
+  for (std::size_t i = 0; i < loop.size(); ++i) loop.time.push_back(0.01 * static_cast<double>(i));
+  const FitResult fit = FitOne(loop, options);
+  EXPECT_FALSE(fit.Find("speed_exponent")->standard_error);
+  EXPECT_NE(fit.FindFinding("not_identifiable", "without_effect"), nullptr);
+}
+
 /// Compares what does not depend on the order of the records of a fit.
 void ExpectSameFit(const FitResult& one, const FitResult& other) {
   constexpr double kSolved = 1e-5;  // of a minimum that is reached from another place

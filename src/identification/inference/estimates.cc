@@ -106,6 +106,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
                          [&](std::size_t p) { return problem.parameters[p].prior_root_weight; });
   const Eigen::MatrixXd priors = weights.asDiagonal();
   const Eigen::MatrixXd directions = FindDirections(priors);
+  if (directions.cols() == 0) return;  // nothing is determined
   // JH has orthonormal columns, so that the noise makes a product of order one: between two
   // inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
   Eigen::MatrixXd product =
