@@ -100,6 +100,19 @@ TEST(ImposedForceFit, SlipForceFarFromWhatWasReachedIsALowerLimit) {
   EXPECT_FALSE(slip_force.upper95.has_value());
 }
 
+TEST(ImposedForceFit, SlipForceOfASteadyLoopIsAtLeastTheLargestForce) {
+  // Short of slip: the displacement tells Tc from below by what the loop has carried.
+  Generator generator(1);
+  const Record loop = From(ForcedLoop(LawOf(1.0 / 3), 0.4), kSamplesPerCycle);
+  FitOptions options = OfDisplacement();
+  options.initial_states = {InitialState::kSteady};
+  options.start["slip_force"] = 0.1 * kSlipForce;
+  const FitResult fit = FitOne(WithDisplacementNoise(loop, 0.05, generator), options);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  ASSERT_TRUE(slip_force.lower95);
+  EXPECT_GE(*slip_force.lower95, 0.999 * 0.4 * kSlipForce);
+}
+
 TEST(ImposedForceFit, HeldParametersStayAndTheOthersFollow) {
   const BranchLaw law = LawOf(0.4);
   for (const auto& [name, value] :

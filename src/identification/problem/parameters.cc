@@ -195,7 +195,8 @@ BoundSide SideOf(const Parameter& parameter, double theta) {
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
   const Term& term = *parameter.term;
-  return side == BoundSide::kLower ? !term.lowest_is_of_theory : !term.highest_is_of_theory;
+  return side == BoundSide::kLower ? !term.lowest_is_of_theory && !parameter.lower_is_of_theory
+                                   : !term.highest_is_of_theory;
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
@@ -226,8 +227,8 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
   ApplyLimits(options, all_are_steady);
   if (is_masing && data.load_varies) KeepShapeBelowOne();
-  if (data.is_forced()) KeepSlipForceAboveLoops(data, states);
   ApplyGuesses(options, data.prior_noise);
+  if (data.is_forced()) KeepSlipForceAboveLoops(data, states);
   RequireTerms(data);
   if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
   Sort();
@@ -279,15 +280,20 @@ void Parameters::KeepShapeBelowOne() {
                "load=LO:HI");
 }
 
-/// Bounds Tc where the force is imposed: below the largest force of a steady loop it has no loop.
+/// Bounds Tc, and begins with it, where the force is imposed: below the largest force of a steady
+/// loop it has no loop.
 void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data,
                                          std::span<const models::InitialState> states) {
   constexpr double kShortOfSlip = 1e-9;
-  double& lower = parameters_[kSlipForce].lower;
+  Parameter& slip_force = parameters_[kSlipForce];
   for (std::size_t r = 0; r < records_; ++r) {
-    if (states[r] != models::InitialState::kSteady) continue;
+    if (slip_force.fixed || states[r] != models::InitialState::kSteady) continue;
     const auto [low, high] = std::ranges::minmax(data.records[r].excitation());
-    lower = std::max(lower, std::log((high - low) / 2) + kShortOfSlip);
+    const double least = std::log((high - low) / 2) + kShortOfSlip;
+    if (!(least > slip_force.lower)) continue;
+    slip_force.lower = std::min(least, slip_force.upper);
+    slip_force.theta = std::max(slip_force.theta, slip_force.lower);
+    slip_force.lower_is_of_theory = true;
   }
 }
 

@@ -43,9 +43,10 @@ struct Parameter {
   double upper = 0.0;
   bool fixed = false;
   bool bounded_by_user = false;
-  bool started_by_user = false;  // θ is where the search starts
-  bool absent = false;           // a term that was not asked for: not reported
-  bool confounded = false;       // held at 0, as an offset that is fitted says the same
+  bool lower_is_of_theory = false;  // of this record, whatever the term's
+  bool started_by_user = false;     // θ is where the search starts
+  bool absent = false;              // a term that was not asked for: not reported
+  bool confounded = false;          // held at 0, as an offset that is fitted says the same
   bool assumed = false;  // held, not where the file has its zero, but where the record begins
 
   /// θ of a prior, and the root weight of θ's difference from it as one more residual; 0 without
