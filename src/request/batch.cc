@@ -102,7 +102,9 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
     std::vector<double> squares;  // of the errors
     for (const Json& row : table) {
       const Json& r_squared = row["r_squared"];
-      const bool is_loop = r_squared.is_null() || r_squared >= seen_loop;
+      const bool describes = row["warnings"].get_ref<const std::string&>().find(
+                                 "model_inadequate") == std::string::npos;
+      const bool is_loop = describes || r_squared.is_null() || r_squared >= seen_loop;
       if (!row["done"].get<bool>() || !is_loop || row[name].is_null()) continue;
       const double value = row[name];
       if (!parameter.empty()) {

@@ -49,6 +49,7 @@ struct Made {
   double half_gap = 0.0;
   bool done = true;
   double r_squared = 1.0;
+  std::vector<std::string> warnings = {};
 };
 
 BatchEntry EntryOf(const Made& made, const std::string& file) {
@@ -60,6 +61,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
       {"identifiability", made.verdict}};
   json["measured"]["half_gap"]["value"] = made.half_gap;
   json["residuals"]["r_squared"] = made.r_squared;
+  for (const std::string& code : made.warnings) json["warnings"].push_back({{"code", code}});
   BatchEntry entry;
   entry.done = made.done;
   entry.file = file;
@@ -83,22 +85,26 @@ constexpr double kNormal95 = 1.959963984540054;
 constexpr double kRounding = 1e-12;
 
 TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
+  const std::vector<std::string> kInadequate = {"model_inadequate"};
   // Errors of 3, and of 1 with an interval that is inflated to 4, which is no scatter.
   const auto repeats = RepeatsOf({{40, 3, 3 * kNormal95, "identifiable", 41},
                                   {48, 1, 4 * kNormal95, "effective", 43},
                                   {1000, 1, kNormal95, "bounded_below", 48},
                                   {2000, 1, kNormal95, "identifiable", 99, /*done=*/false},
-                                  {9, 1, 1, "not_identifiable", 1, true, /*r_squared=*/0.05}});
+                                  // no loop is seen
+                                  {9, 1, 1, "not_identifiable", 1, true, 0.05, kInadequate},
+                                  // small beside readings that a loss weighs down
+                                  {44, 2, 2 * kNormal95, "identifiable", 44, true, 0.05}});
   const auto& slip_force = repeats["slip_force"];
-  EXPECT_EQ(slip_force["files"], 2);
+  EXPECT_EQ(slip_force["files"], 3);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);
-  EXPECT_NEAR(slip_force["standard_deviation"], std::sqrt(32.0), 10 * kRounding);
-  EXPECT_NEAR(slip_force["stated_error"], std::sqrt((9.0 + 1.0) / 2), 10 * kRounding);
+  EXPECT_NEAR(slip_force["standard_deviation"], std::sqrt(32.0 / 2), 10 * kRounding);
+  EXPECT_NEAR(slip_force["stated_error"], std::sqrt((9.0 + 1.0 + 4.0) / 3), 10 * kRounding);
   // Measured without a model: no error is stated, and the verdict on Tc is none on the gap.
   const auto& half_gap = repeats["half_gap"];
-  EXPECT_EQ(half_gap["files"], 3);
+  EXPECT_EQ(half_gap["files"], 4);
   EXPECT_NEAR(half_gap["mean"], 44.0, kRounding);
-  EXPECT_NEAR(half_gap["standard_deviation"], std::sqrt((9.0 + 1 + 16) / 2), 10 * kRounding);
+  EXPECT_NEAR(half_gap["standard_deviation"], std::sqrt((9.0 + 1 + 16) / 3), 10 * kRounding);
   EXPECT_TRUE(half_gap["stated_error"].is_null());
   EXPECT_FALSE(repeats.contains("sigma"));
 }
