@@ -67,6 +67,7 @@ std::vector<States> StatesToTry(const Attempt& attempt) {
 /// True if the search of where a contact was unloaded stopped at a limit of its own: what is told
 /// is the cycles before the record.
 bool IsUnloadedAtLimit(const Candidate& candidate) {
+  if (!std::isfinite(candidate.solution.sum_of_squares)) return false;  // none was made
   const Parameters& parameters = candidate.problem.parameters;
   for (std::size_t r = 0; r < candidate.problem.states.size(); ++r) {
     const std::size_t origin = parameters.PositionOfOrigin(r);
@@ -78,7 +79,7 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  // A fit that is given its start looks for none.
+  // A fit that is given a start looks for others on all samples, where it does.
   std::optional<ScaledRecords> thinned;
   if (options.start.empty()) thinned = Thinned(attempt.data);
   const ScaledRecords& thin = thinned ? *thinned : attempt.data;
@@ -118,11 +119,12 @@ SolvedFit FitBestState(const Attempt& attempt) {
     return evidence.Aicc(candidate.solution.sum_of_squares,
                          candidate.problem.parameters.free().size());
   };
-  const double gain = steady.solution.converged && IsUnloadedAtLimit(virgin)
-                          ? -std::numeric_limits<double>::infinity()
-                          : criterion(steady) - criterion(virgin);
-  Candidate& best = gain > 0 ? virgin : steady;
-  const Candidate& other = gain > 0 ? steady : virgin;
+  const double gain = criterion(steady) - criterion(virgin);
+  // A cycled contact that fits hardly worse is told, one that was unloaded at a limit is not.
+  const bool is_told = steady.solution.converged && IsUnloadedAtLimit(virgin);
+  const bool is_virgin = gain > (is_told ? options.thresholds.undecided : 0.0);
+  Candidate& best = is_virgin ? virgin : steady;
+  const Candidate& other = is_virgin ? steady : virgin;
   std::optional<models::BranchLaw> law;
   if (std::abs(gain) < options.thresholds.indistinguishable && other.solution.converged) {
     law = other.problem.parameters.LawAt(other.solution.theta);
