@@ -31,8 +31,8 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
 /// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
 /// is unloaded at the first sample, a rig of unknown stiffness tried at some ratios to the
-/// contact's. The best of each α, or where α is held
-/// of each third of the plane, goes on to the minimum of the thinned record.
+/// contact's. The best of each α, or where α is held of each third of the plane, goes on to the
+/// minimum of the thinned record.
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
                     Solver& solver);

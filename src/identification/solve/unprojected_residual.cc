@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "mindahl/core/error.h"
@@ -13,12 +14,11 @@ namespace {
 /// Puts the loss of a residual in its place.
 /// @returns the derivative by the residual
 double ApplyLoss(const ceres::LossFunction& loss, double& residual) {
-  constexpr double kQuadratic = 1e-10;  // below it a loss is its square, but for its rounding
-  const double square = residual * residual;
-  if (square < kQuadratic) return 1.0;
   std::array<double, 3> rho{};  // and its derivatives by the square
-  loss.Evaluate(square, rho.data());
-  const double slope = rho[1] * std::abs(residual) / std::sqrt(rho[0]);
+  loss.Evaluate(residual * residual, rho.data());
+  const bool is_zero = !(rho[0] > 0);  // or its square is
+  const double slope =
+      is_zero ? std::sqrt(rho[1]) : rho[1] * std::abs(residual) / std::sqrt(rho[0]);
   residual = std::copysign(std::sqrt(rho[0]), residual);
   return slope;
 }
