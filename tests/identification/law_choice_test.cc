@@ -1,5 +1,3 @@
-
-
 #include "identification/inference/profile.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit_result.h"
@@ -65,6 +63,18 @@ TEST(LawChoice, OfASteadyLoopFittedByDahlsLawGivesTheContactByMasings) {
   EXPECT_EQ(fit.law_choice->alternative->name, "mindlin-dahl");
   EXPECT_LE(WorstError(fit.law, DahlEquivalent(kMindlin, 0.8 * kGrossSlip)), kNoiseFree);
   EXPECT_LE(WorstError(fit.law_choice->law, kMindlin), kNoiseFree);
+}
+
+/// A large exponent looks like slip at two thirds of Tc: held at the largest force, no law would be
+/// compared.
+TEST(LawChoice, IsMadeBeforeTheSlipForceIsHeldAtTheLargestForce) {
+  const BranchLaw law{4e7, 2.45, 40.0};
+  const History displacement = Cycling(Wave::kSine, 1.16 * kGrossSlip, 4.0, 2 * kPerCycle);
+  const Record record = MakeRecord(displacement, Respond(Model("dahl"), law, displacement));
+  const FitResult fit = FitOne(Noisy(record));
+  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided);
+  EXPECT_EQ(fit.law_choice->preferred->name, "dahl");
+  EXPECT_LE(fit.WidestRecord().facts.peak_force, 0.8 * law.slip_force);
 }
 
 TEST(LawChoice, IsMadeByAVirginBranch) {

@@ -72,17 +72,18 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   // Below, nothing says that the model does not follow the record.
   if (result.depth < Depth::kIntervals) return std::nullopt;
   const Thresholds& thresholds = options.thresholds;
+  // The other law may carry it.
+  if (result.law_choice && result.law_choice->prefers_alternative()) return std::nullopt;
   const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
                            result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
-  if (is_followed || result.parameters.empty() ||
-      result.response == loop::Channel::kDisplacement || result.is_scaled_by_load() ||
-      options.bounds.contains(kName) || options.fixed.contains(kName)) {
+  if (is_followed || result.parameters.empty() || result.response == loop::Channel::kDisplacement ||
+      result.is_scaled_by_load() || options.bounds.contains(kName) ||
+      options.fixed.contains(kName)) {
     return std::nullopt;
   }
   const RecordFit& widest = result.WidestRecord();
   const double peak_force = widest.facts.peak_force / widest.load_ratio;
-  if (!loop::Slides(widest.facts) ||
-      peak_force >= thresholds.mobilised * result.law.slip_force) {
+  if (!loop::Slides(widest.facts) || peak_force >= thresholds.mobilised * result.law.slip_force) {
     return std::nullopt;
   }
   FitOptions within = options;

@@ -27,7 +27,8 @@ ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
 
 /// Returns the options of a second fit, with a slip force no larger than the largest force, where
 /// the loop slides over most of its stroke and a law that misses more than poor_misfit carries its
-/// slip force nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
+/// slip force nowhere: the loop has carried it. Nothing where that is not so, where the other law
+/// is preferred, or the user limits Tc.
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options);
 
 /// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
