@@ -118,7 +118,7 @@ std::optional<TermScore> Scorer::Score(const TermChoice& choice) {
     if (is_tried) theta[*exponent] = tried;
     const TermScore score =
         ScoreColumns(problem, added, LinearizeAt(problem, theta, response_, added).jacobian);
-    if (score.gain > (best ? best->gain : 0.0)) best = score;
+    if (!best || score.gain > best->gain) best = score;
     if (!is_tried) break;
   }
   return best;

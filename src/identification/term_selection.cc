@@ -334,8 +334,8 @@ void Selection::KeepAlternatives(const TermCandidate& added,
                                  std::span<TermCandidate* const> others) {
   for (const TermCandidate* const other : others) {
     const bool is_column = !other->choice.covariate.empty();
-    if (is_column || other->score->is_negative || other->gain < Limits().rival * added.gain)
-      continue;
+    const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
+    if (is_column || is_unphysical || other->gain < Limits().rival * added.gain) continue;
     Alternative& alternative =
         alternatives_.emplace_back(Alternative{.name = other->name, .rms = other->score->rms});
     std::ranges::transform(other->score->law, added.score->law, alternative.law.begin(),

@@ -52,8 +52,8 @@ struct SolverReport {
 enum class Depth {
   kEstimate,   ///< values, rms, convergence: for work that is done again and again
   kErrors,     ///< and facts of the record, noise, standard errors, intervals, correlations and
-               ///< residuals as if the model were adequate: from the parabola of the likelihood,
-               ///< and from its profile where that is wrong about Tc
+               ///< residuals as if the model were adequate, none where no loop is seen: from the
+               ///< parabola of the likelihood, and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
   kFull,       ///< and a rig in place of another α, and the other law: what the program asks for

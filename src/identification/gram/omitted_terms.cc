@@ -136,15 +136,16 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
     const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
     TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
-    least = std::min(least, term.p_value);
-    explained = std::max(explained, term.explains * gram.sum_of_squares());
+    // Noise that remembers makes one more often than what all columns leave of it says.
+    if (process.order == 0) {
+      least = std::min(least, term.p_value);
+      explained = std::max(explained, term.explains * gram.sum_of_squares());
+    }
     test.fits.push_back(std::move(term));
   }
   test.misfit_over_noise = std::sqrt(explained / samples / level.variance);
   // Two tests are made, of all terms together and of the one that noise alone makes least often.
-  // Noise that remembers makes one more often than what all columns leave of it says.
-  const double of_one = process.order > 0 ? 1.0 : 2 * gram.IndependentTests() * least;
-  test.p_value = std::min(terms.p_value, of_one);
+  test.p_value = std::min(terms.p_value, 2 * gram.IndependentTests() * least);
   return test;
 }
 

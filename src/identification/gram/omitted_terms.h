@@ -14,7 +14,7 @@ namespace mindahl::identification {
 /// γ_k ~ N(0, τ²/‖c_k‖²), τ by the marginal likelihood, and ε the noise process of what all columns
 /// leave: what a model misses is smooth along the loop and would pass for autocorrelated noise.
 struct AdequacyTest {
-  double misfit_over_noise = 0.0;   // rms of C·E(γ) beside J, over the noise
+  double misfit_over_noise = 0.0;   // rms of C·E(γ) beside J, or of one term, over the noise
   double p_value = 1.0;             // that noise alone looks so
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
