@@ -1,6 +1,5 @@
 #include "identification/inference/noise.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,34 +52,37 @@ std::size_t HighestOrderOf(std::size_t count) {
   return std::min(kHighestOrder, count / kSamplesPerOrder);
 }
 
-/// Solves Yule and Walker's equations of each order.
+/// Solves by Levinson and Durbin: each order from the one before.
 /// @param count  samples that the covariances are of
 Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
   Autocorrelation best;
   if (!(covariance[0] > 0)) return best;
-  Eigen::Matrix<double, kHighestOrder, kHighestOrder> matrix;
-  Eigen::Vector<double, kHighestOrder> column;
-  for (Eigen::Index i = 0; i < column.size(); ++i) {
-    column[i] = covariance[static_cast<std::size_t>(i) + 1] / covariance[0];
-    for (Eigen::Index j = 0; j < column.size(); ++j) {
-      matrix(i, j) = covariance[static_cast<std::size_t>(std::abs(i - j))] / covariance[0];
-    }
-  }
   const auto samples = static_cast<double>(count);
+  std::array<double, kHighestOrder> coefficients{};
+  double variance = covariance[0];
   double best_criterion = 0.0;  // of order 0, by how much others are better
   for (std::size_t order = 1; order <= HighestOrderOf(count); ++order) {
-    const auto size = static_cast<Eigen::Index>(order);
-    const Eigen::VectorXd coefficients =
-        matrix.topLeftCorner(size, size).ldlt().solve(column.head(size));
-    const double share = 1 - coefficients.dot(column.head(size));
-    if (!(share > 0)) break;
-    const double criterion =
-        samples * std::log(share) + static_cast<double>(order) * std::log(samples);
-    if (criterion >= best_criterion) continue;
-    best_criterion = criterion;
-    best.order = order;
-    std::ranges::copy(coefficients, best.coefficients.begin());
-    best.innovation_share = share;
+    double numerator = covariance[order];
+    for (std::size_t k = 1; k < order; ++k) {
+      numerator -= coefficients[k - 1] * covariance[order - k];
+    }
+    const double reflection = numerator / variance;
+    std::array<double, kHighestOrder> next{};
+    for (std::size_t k = 1; k < order; ++k) {
+      next[k - 1] = coefficients[k - 1] - reflection * coefficients[order - k - 1];
+    }
+    next[order - 1] = reflection;
+    coefficients = next;
+    variance *= 1 - reflection * reflection;
+    if (!(variance > 0)) break;
+    const double criterion = samples * std::log(variance / covariance[0]) +
+                             static_cast<double>(order) * std::log(samples);
+    if (criterion < best_criterion) {
+      best_criterion = criterion;
+      best.order = order;
+      best.coefficients = coefficients;
+      best.innovation_share = variance / covariance[0];
+    }
   }
   // Yule and Walker's process has the correlations that it was made from, to its order.
   for (std::size_t lag = 0; lag <= best.order; ++lag) {
