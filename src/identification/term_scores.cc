@@ -127,7 +127,7 @@ std::optional<TermScore> Scorer::Score(const TermChoice& choice) {
 TermScore Scorer::ScoreColumns(const Problem& problem, std::span<const std::size_t> added,
                                const Eigen::MatrixXd& columns) const {
   const Gram gram(at_.jacobian, columns, at_.residual, kOwnShare);
-  const GramAxes axes = gram.AxesOf(gram.All());
+  const GramAxes axes = gram.AxesOfAll();
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
   for (std::size_t c = 0; c < added.size(); ++c) {

@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 
 #include "core/probability.h"
-#include "identification/dense.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"
@@ -163,12 +162,6 @@ TEST(Estimates, OfADirectionWithoutEffectAreNone) {
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(std::isinf(estimates.ErrorOfTheta(free[k])), k < 2) << k;
   }
-}
-
-TEST(LeftOver, OfAMatrixOfZerosOrWithoutColumnsIsAll) {
-  const Eigen::MatrixXd all = Eigen::MatrixXd::Ones(3, 4);
-  EXPECT_EQ(LeftOver(Eigen::MatrixXd::Zero(3, 2), all), all);
-  EXPECT_EQ(LeftOver(Eigen::MatrixXd(3, 0), all), all);
 }
 
 TEST(Intervals, AreTheUnionOfTheirParts) {

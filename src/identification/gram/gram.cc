@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace mindahl::identification {
 namespace {
@@ -80,12 +81,6 @@ double Gram::IndependentTests() const {
   return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
 }
 
-std::vector<Eigen::Index> Gram::All() const {
-  std::vector<Eigen::Index> all(static_cast<std::size_t>(free_.cols()));
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  return all;
-}
-
 GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {
   const std::vector<Eigen::Index> at(places.begin(), places.end());
   GramAxes axes;
@@ -101,6 +96,12 @@ GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {
   axes.noise =
       (axes.vectors.cwiseProduct(noise).colwise().sum().transpose().array() / axes.values).max(1.0);
   return axes;
+}
+
+GramAxes Gram::AxesOfAll() const {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(free_.cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return AxesOf(all);
 }
 
 GramStep Gram::StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <vector>
 
 namespace mindahl::identification {
 
@@ -45,9 +44,8 @@ class Gram {
   /// Number of independent tests that a test of each of C's columns amounts to: (Σ√λ)²/Σλ of the
   /// eigenvalues λ of their correlations (Galwey 2009).
   [[nodiscard]] double IndependentTests() const;
-  /// Returns the places of all of C's columns.
-  [[nodiscard]] std::vector<Eigen::Index> All() const;
   [[nodiscard]] GramAxes AxesOf(std::span<const Eigen::Index> places) const;
+  [[nodiscard]] GramAxes AxesOfAll() const;
   /// Returns the step to the least sum of squares of r + Jδ + Cγ.
   /// @param gains  of the axes: 1/value of least squares, less with a prior
   [[nodiscard]] GramStep StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const;

@@ -87,7 +87,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const ScaledRecords& data = *problem.data;
   const auto& free = problem.parameters.free();
   Eigen::MatrixXd jacobian = fitted.jacobian();
-  // What parameters at a bound, the user's or the program's, would still explain, they may not.
+  // A parameter at a bound, the user's or the program's, cannot move: its column explains nothing.
   for (std::size_t j = 0; j < free.size(); ++j) {
     if (solution.side[free[j]] == BoundSide::kInside) continue;
     jacobian.col(static_cast<Eigen::Index>(j)).setZero();
@@ -101,7 +101,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
       ColumnsOfDepartures(problem, solution.theta, thresholds, response, most);
   if (departures.terms.empty()) return {};
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
-  GramAxes axes = gram.AxesOf(gram.All());
+  GramAxes axes = gram.AxesOfAll();
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
@@ -110,7 +110,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
     gram.SetNoise(noise.Product(data.records, process, columns));
-    axes = gram.AxesOf(gram.All());
+    axes = gram.AxesOfAll();
   }
   AdequacyTest test;
   const auto own = static_cast<double>(axes.values.size());

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/refuse.h"
-#include "identification/dense.h"
 #include "identification/problem/motion.h"
 #include "mindahl/core/error.h"
 
@@ -47,7 +46,8 @@ double StartingPeriod(const ScaledRecords& data) {
     const Eigen::ArrayXd position = some.row(0);
     Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(position.size(), 4);
     for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).array() * position;
-    const Eigen::ArrayXd force = LeftOver(powers, some.row(1).transpose()).array();
+    const Eigen::VectorXd forces = some.row(1);
+    const Eigen::ArrayXd force = forces - powers * powers.colPivHouseholderQr().solve(forces);
     for (Eigen::Index k = 0; k < kFrequencies; ++k) {
       const Eigen::ArrayXd phase = 2 * std::numbers::pi * frequencies[k] * position;
       const double cosine = (force * phase.cos()).sum();
