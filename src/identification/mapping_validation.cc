@@ -24,9 +24,9 @@ namespace {
 constexpr std::array kCycles = {1.0, 1.25, 2.0, 2.5, 3.0, 4.0};
 constexpr std::array<std::size_t, 3> kSamplesPerCycle = {100, 200, 400};
 
-/// Below λ = 1/2 the loop's deviation from a straight line, which alone distinguishes α from Tc,
-/// shrinks as λ² and magnifies rounding errors likewise. With noise χ² of three degrees of freedom
-/// is beyond six squared once in 10⁷.
+/// Returns the tolerance of a row. Below λ = 1/2 the loop's deviation from a straight line, which
+/// alone distinguishes α from Tc, shrinks as λ² and magnifies rounding errors likewise. With noise
+/// χ² of three degrees of freedom exceeds six squared once in 10⁷.
 double ToleranceOf(double lambda, double noise) {
   if (noise > 0) return 6.0;
   return lambda >= 0.5 ? 1e-8 : 1e-6;

@@ -34,10 +34,11 @@ struct TermSelection {
 ///
 /// A record that the law describes adequately gets none: its fit stays as it is. Otherwise every
 /// candidate for which there are data is scored by one Gauss-Newton step from the present solution.
-/// Of those that lower the rms by 3 %, by chance with p < 0.05 over all candidates, the best is
-/// fitted, or what has some of its terms only and gains half as much; it is added unless its fit
-/// does not converge, gains less, ends at a bound or leaves the half gap, else the next one is
-/// tried. The rounds end when none is added or 15 fits are made.
+/// A candidate may be added if it lowers the rms by 3 % or more, and if chance makes any candidate
+/// do so with a probability below 5 %. The best of these is fitted, or a candidate that has only a
+/// part of its terms and gains at least half as much. It is added unless its fit does not converge,
+/// gains less than 3 %, ends at a bound or moves Tc away from the half gap; then the next one is
+/// tried. The rounds end when no candidate is added or 15 fits are made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
 /// a candidate before it, or where it follows the contact's force, |r| > 0.3: its factor and the

@@ -63,7 +63,8 @@ struct Parameter {
 /// Says on which side of its bounds a parameter lies.
 enum class BoundSide { kInside, kLower, kUpper };
 
-/// The one definition of "at a bound": within 1e-9 of the bounds' distance, at least 1e-9.
+/// The one definition of "at a bound": within 1e-9 of the bounds' distance, which counts as 1 to
+/// 1000.
 BoundSide SideOf(const Parameter& parameter, double theta);
 
 /// True if a parameter that lies at this side stopped at a bound of the program's own: neither the

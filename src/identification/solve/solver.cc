@@ -20,9 +20,10 @@ constexpr double kLastStep = 1e-8;
 
 /// ceres::TinySolver with what the searches of one start share.
 ///
-/// TinySolver has no bounds, evaluates a trial without its Jacobian, and stops by the absolute
-/// change of the cost. Its cost functor therefore
+/// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
+/// stops by the absolute change of the cost. Its cost functor therefore
 /// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
+/// - refuses a trial that is too far for its linearisation;
 /// - linearises a trial at once, as an accepted one is linearised next;
 /// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
 ///   the function tolerance.
