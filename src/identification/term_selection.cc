@@ -25,9 +25,13 @@ using loop::RecordView;
 
 namespace {
 
-/// Fits in all, nearly all of them at Depth::kEstimate.
-constexpr std::size_t kMostFits = 15;
-constexpr std::size_t kLastFits = 3;  // of these, in a round and at the end
+/// Most terms that are added one after the other.
+constexpr std::size_t kMostAlone = 2;
+
+/// What measured loops have in addition to the law. Which few of these gain most changes with the
+/// excerpt, and Tc with them: where no few terms leave but noise, all are fitted together.
+constexpr std::array<std::string_view, 6> kCommonTerms = {
+    "slip_speed", "drag", "slip_position_quadratic", "slip_trend", "force_drift", "lag"};
 
 /// A candidate of one selection.
 struct TermCandidate : ConsideredTerm {
@@ -37,11 +41,6 @@ struct TermCandidate : ConsideredTerm {
   /// True of a column that follows the force of the contact: its cause, or confounded with it.
   [[nodiscard]] bool FollowsForce() const {
     return !choice.covariate.empty() && obstacle == "confounded";
-  }
-  /// True of a term whose effect is not linear: a fit says what it gains, a score does not.
-  [[nodiscard]] bool MovesContact() const {
-    return !choice.terms.empty() &&
-           FindTerm(choice.terms.front())->motion != ContactMotion::kMeasured;
   }
 };
 
@@ -182,7 +181,6 @@ class Selection {
   };
 
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
-  [[nodiscard]] bool MayFit() const { return fits_ + kLastFits < kMostFits; }
   std::vector<TermCandidate*> Score();
   [[nodiscard]] bool IsRefused(TermCandidate& candidate) const;
   [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
@@ -193,15 +191,16 @@ class Selection {
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(TermCandidate& candidate, Model model);
   bool Round();
-  bool Move();
+  [[nodiscard]] bool IsKept(const FitResult& law, const FitResult& fit) const;
+  FitResult FitCommon(const FitResult& law);
   void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others);
   FitResult FitLast(const FitResult& law);
 
   std::span<const RecordView> records_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
-  std::size_t fits_ = 1;                              // that were made
   std::vector<TermCandidate> candidates_;
+  Model law_;                       // without terms
   Model base_;                      // with the terms that were added
   std::vector<std::string> added_;  // names of these candidates
   std::vector<Alternative> alternatives_;
@@ -216,7 +215,7 @@ Selection::Selection(std::span<const RecordView> records, const FitOptions& opti
       base_{.options = options, .fit = law} {
   // The law is fitted again as the candidates are, without an upper bound on the slip force: a
   // missing term may drive it beyond the measured force.
-  base_ = FitWith({});
+  base_ = law_ = FitWith({});
 }
 
 /// Scores the candidates at the present solution and returns those that have an effect, the best
@@ -292,7 +291,6 @@ FitResult Selection::FitTo(FitOptions options, Depth depth) {
   options.preparation.drawn = drawn_;
   options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
   try {
-    ++fits_;
     return Fitter(options).Fit(records_, depth);
   } catch (const InvalidArgument&) {
     return {};
@@ -354,7 +352,7 @@ bool Selection::Round() {
   std::vector<TermCandidate*> left = explaining;
   std::erase_if(left, [&](TermCandidate* candidate) { return IsRefused(*candidate); });
   constexpr double kMost = 0.5;
-  while (!left.empty() && MayFit()) {
+  while (!left.empty()) {
     TermCandidate& best = Simplest(left);
     // A search from a solution that most of the misfit has led astray may end elsewhere.
     if (Add(best, FitWith(best.choice)) ||
@@ -367,45 +365,70 @@ bool Selection::Round() {
   return false;
 }
 
-/// Adds the better of the terms that move the contact, where no other can be added.
-bool Selection::Move() {
-  if (IsNearlyWhite(base_.fit, Limits())) return false;
-  TermCandidate* best = nullptr;
-  Model of_best;
-  for (TermCandidate* const candidate : Score()) {
-    if (!candidate->MovesContact() || !MayFit()) continue;
-    Model model = FitWith(candidate->choice);
-    if (!ObstacleTo(model).empty() || (best != nullptr && model.fit.rms >= of_best.fit.rms)) {
-      continue;
+/// True unless a fit with terms loses Tc.
+bool Selection::IsKept(const FitResult& law, const FitResult& fit) const {
+  return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
+}
+
+/// Fits the law with all common terms, which begin without effect, and moves there unless there is
+/// an obstacle or the terms that were added one after the other leave hardly more.
+/// @param law  of Depth::kFull
+/// @returns a fit without parameters where it does not move
+FitResult Selection::FitCommon(const FitResult& law) {
+  const Model added = std::exchange(base_, law_);
+  std::vector<TermCandidate*> common;
+  FitOptions options = law_.options;
+  FitOptions from_terms = options;
+  for (TermCandidate& candidate : candidates_) {
+    if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
+    common.push_back(&candidate);
+    for (const std::string_view term : FindTermGroup(candidate.name)->terms) {
+      if (HasTerm(law_.options, term)) continue;
+      options.terms.emplace_back(term);
+      const std::optional<double> start = FindTerm(term)->start;
+      if (start) from_terms.start[std::string(term)] = *start;
     }
-    best = candidate;
-    of_best = std::move(model);
   }
-  return best != nullptr && Add(*best, std::move(of_best));
+  from_terms.terms = options.terms;
+  Model model{.options = std::move(options), .fit = FitTo(std::move(from_terms), Depth::kFull)};
+  const bool is_better = model.fit.rms <= (1 - Limits().worthwhile_gain) * added.fit.rms;
+  if (!ObstacleTo(model).empty() || !IsKept(law, model.fit) || !is_better) {
+    base_ = added;
+    return {};
+  }
+  for (TermCandidate& candidate : candidates_) candidate.added = false;
+  added_.clear();
+  alternatives_.clear();
+  for (TermCandidate* const candidate : common) {
+    candidate->added = true;
+    candidate->obstacle = "";
+    added_.push_back(candidate->name);
+  }
+  base_.options = std::move(model.options);
+  return std::move(model.fit);
 }
 
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
 /// Tc or leave more than is known to be left, else from where it is.
 /// @returns a fit without parameters where Tc is lost
 FitResult Selection::FitLast(const FitResult& law) {
-  const auto is_kept = [&](const FitResult& fit) {
-    return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
-  };
   FitResult last = FitTo(base_.options, Depth::kFull);
-  if (!is_kept(last) || last.rms > (1 + Limits().worthwhile_gain) * base_.fit.rms) {
+  if (!IsKept(law, last) || last.rms > (1 + Limits().worthwhile_gain) * base_.fit.rms) {
     FitOptions from_here = base_.options;
     StartFrom(base_.fit, from_here);
     last = FitTo(std::move(from_here), Depth::kFull);
   }
-  return is_kept(last) ? last : FitResult();
+  return IsKept(law, last) ? last : FitResult();
 }
 
 TermSelection Selection::Run(FitResult law) {
   TermSelection result;
   result.options = base_.options;
-  while (Round() || Move()) {
+  while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
   }
-  FitResult last = added_.empty() ? FitResult() : FitLast(law);
+  FitResult last;
+  if (!IsNearlyWhite(base_.fit, Limits())) last = FitCommon(law);
+  if (!IsFitted(last) && !added_.empty()) last = FitLast(law);
   if (IsFitted(last)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
