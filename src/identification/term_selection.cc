@@ -28,8 +28,8 @@ namespace {
 /// Most terms that are added one after the other.
 constexpr std::size_t kMostAlone = 2;
 
-/// What measured loops have in addition to the law. Which few of these gain most changes with the
-/// excerpt, and Tc with them: where no few terms leave but noise, all are fitted together.
+/// Lists what measured loops have in addition to the law. Which few of these gain most changes with
+/// the excerpt, and Tc with them: where no few terms leave but noise, all are fitted together.
 constexpr std::array<std::string_view, 6> kCommonTerms = {
     "slip_speed", "drag", "slip_position_quadratic", "slip_trend", "force_drift", "lag"};
 
