@@ -390,9 +390,15 @@ FitResult Selection::FitCommon(const FitResult& law) {
     }
   }
   from_terms.terms = options.terms;
-  Model model{.options = std::move(options), .fit = FitTo(std::move(from_terms), Depth::kFull)};
+  Model model{.options = std::move(options), .fit = FitTo(std::move(from_terms), Depth::kEstimate)};
   const bool is_better = model.fit.rms <= (1 - Limits().worthwhile_gain) * added.fit.rms;
-  if (!ObstacleTo(model).empty() || !IsKept(law, model.fit) || !is_better) {
+  FitResult last;
+  if (ObstacleTo(model).empty() && is_better) {
+    FitOptions from_here = model.options;
+    StartFrom(model.fit, from_here);
+    last = FitTo(std::move(from_here), Depth::kFull);
+  }
+  if (!IsKept(law, last)) {
     base_ = added;
     return {};
   }
@@ -405,7 +411,7 @@ FitResult Selection::FitCommon(const FitResult& law) {
     added_.push_back(candidate->name);
   }
   base_.options = std::move(model.options);
-  return std::move(model.fit);
+  return last;
 }
 
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
