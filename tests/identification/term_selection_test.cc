@@ -1,6 +1,7 @@
 #include "mindahl/identification/term_selection.h"
 
 #include "recovery/recovered.h"
+#include "support/measured.h"
 #include "support/prelude.h"
 
 // Which terms SelectTerms adds to the law of records whose terms are known.
@@ -135,6 +136,43 @@ TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
   const double half_gap = *selection.fit.WidestRecord().facts.half_gap;
   EXPECT_GT(selection.fit.law.slip_force, half_gap / 1.25);
   EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.25);
+}
+
+/// What the terms of measured loops have in common.
+const auto kAllCommon = ::testing::UnorderedElementsAre(
+    "slip_speed", "drag", "slip_trend", "slip_position_quadratic", "force_drift", "lag");
+
+TEST(TermSelection, CommonTermsAreFittedTogetherWhereTwoLeaveMoreThanNoise) {
+  Record record = With(0.0, 0.2);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double gone = static_cast<double>(i) / static_cast<double>(record.size());
+    record.force[i] *= 1 + 0.2 * (std::sqrt(std::abs(SpeedAt(i)) / kFastest) - 1) + 0.1 * gone;
+    record.force[i] += 0.1 * kLaw.slip_force * gone +
+                       0.03 * kLaw.slip_force * std::sin(9 * record.displacement[i] / kReach);
+  }
+  const TermSelection selection = Select(Noisy(record, 15));
+  EXPECT_THAT(selection.added, kAllCommon);
+  EXPECT_TRUE(TermOf(selection, "drag").added);
+  EXPECT_TRUE(TermOf(selection, "drag").obstacle.empty());
+}
+
+TEST(TermSelection, SealHasTheSameTermsAndSlipForceWithoutItsFirstRows) {
+  auto rows = testing::ReadMeasured("seals/Stadium_1bar.csv", '\t');
+  if (!rows) GTEST_SKIP() << "the measured records are not here";
+  std::vector<double> slip_forces;
+  for (const double left_out : {0.0, 0.07}) {
+    const auto first = static_cast<std::ptrdiff_t>(left_out * static_cast<double>(rows->size()));
+    const std::vector<std::vector<double>> some(rows->begin() + first, rows->end());
+    Record record{.displacement = testing::Column(some, 4), .force = testing::Column(some, 6)};
+    record.time = testing::Column(some, 0);
+    for (double& place : record.displacement) place *= 1e-3;
+    for (double& time : record.time) time *= 1e-3;
+    const TermSelection selection = Select(record);
+    EXPECT_THAT(selection.added, kAllCommon);
+    EXPECT_EQ(selection.fit.adequacy.use, Use::kQuantitative);
+    slip_forces.push_back(selection.fit.law.slip_force);
+  }
+  EXPECT_NEAR(slip_forces[1] / slip_forces[0], 1.0, 0.05);
 }
 
 TEST(TermSelection, NegativeDampingIsNotAdded) {
