@@ -71,10 +71,11 @@ void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptio
   const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
-  if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
+  if (!MayOmitTerms(result.adequacy, thresholds)) return;
   WidenByOmittedTerms(problem, solution, test, causes,
                       StudentQuantile(test.degrees_of_freedom, options.confidence),
                       result.parameters);
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   result.parameters = CoverDiscrepancy(fitted, thresholds, result);
 }
 

@@ -187,6 +187,15 @@ const std::vector<Row>& Cases() {
        [](const Thresholds& t) {
          return IsDoubted(t, kBelow * 0.005) && !IsDoubted(t, kAbove * 0.005);
        }},
+      {&Thresholds::omission_chance,
+       [](const Thresholds& t) {
+         const auto is_included = [&](double chance) {
+           Adequacy adequacy;
+           adequacy.p_value = chance;
+           return MayOmitTerms(adequacy, t);
+         };
+         return is_included(kBelow * 0.2) && !is_included(kAbove * 0.2);
+       }},
       {&Thresholds::rare_chance,
        [](const Thresholds& t) {
          const auto causes = [&](double p_value) {

@@ -61,6 +61,9 @@ struct Thresholds {
   /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
   /// hundred is doubted.
   double doubt = 0.005;
+  /// [p] Intervals include what omitted terms would change if noise alone makes these less often.
+  /// Between doubt and this chance the model stands, but the record does not rule them out.
+  double omission_chance = 0.2;
   /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
   /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
   /// those of another minimum or a worse term. Noise by pure error or by neighbours is known to a

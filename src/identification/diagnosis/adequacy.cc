@@ -157,6 +157,11 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   return adequacy;
 }
 
+bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds) {
+  return adequacy.verdict != AdequacyVerdict::kAdequate ||
+         adequacy.p_value < thresholds.omission_chance;
+}
+
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   Adequacy adequacy = result.adequacy;
   const double missed = MissedForce(result);

@@ -55,6 +55,10 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);
 
+/// True if intervals include what omitted terms would change: those of a model that is not
+/// adequate, and where noise alone does not often make what the terms explain.
+bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds);
+
 /// True if residuals are a poor misfit and remember for longer than noise_memory, by their
 /// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
 /// confounded with whatever changes slowly.
