@@ -1,11 +1,13 @@
 #include "mindahl/identification/term_selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/extremes.h"
