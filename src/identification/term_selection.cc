@@ -166,7 +166,7 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
   Judge(fit.parameters, fit.findings);
 }
 
-/// Adds terms to a law, one after the other.
+/// Adds terms to a law: a few one after the other, or all common ones.
 class Selection {
  public:
   /// @param law  fit of the records with the options
@@ -188,6 +188,7 @@ class Selection {
   [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
   Model FitWith(const TermChoice& choice, bool from_here = true);
   FitResult FitTo(FitOptions options, Depth depth);
+  FitResult FitFrom(const Model& model);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] bool Gains(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
@@ -299,6 +300,13 @@ FitResult Selection::FitTo(FitOptions options, Depth depth) {
   }
 }
 
+/// Fits a model to the end, from its solution.
+FitResult Selection::FitFrom(const Model& model) {
+  FitOptions options = model.options;
+  StartFrom(model.fit, options);
+  return FitTo(std::move(options), Depth::kFull);
+}
+
 /// True if Tc leaves the half gap that was measured, and more than noise is left.
 bool Selection::Leaves(const FitResult& fit) const {
   return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
@@ -377,29 +385,25 @@ bool Selection::IsKept(const FitResult& law, const FitResult& fit) const {
 /// @param law  of Depth::kFull
 /// @returns a fit without parameters where it does not move
 FitResult Selection::FitCommon(const FitResult& law) {
-  const Model added = std::exchange(base_, law_);
   std::vector<TermCandidate*> common;
-  FitOptions options = law_.options;
-  FitOptions from_terms = options;
+  TermChoice all;
   for (TermCandidate& candidate : candidates_) {
     if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
     common.push_back(&candidate);
-    for (const std::string_view term : FindTermGroup(candidate.name)->terms) {
-      if (HasTerm(law_.options, term)) continue;
-      options.terms.emplace_back(term);
-      const std::optional<double> start = FindTerm(term)->start;
-      if (start) from_terms.start[std::string(term)] = *start;
-    }
+    const std::vector<std::string_view>& terms = FindTermGroup(candidate.name)->terms;
+    all.terms.insert(all.terms.end(), terms.begin(), terms.end());
   }
-  from_terms.terms = options.terms;
-  Model model{.options = std::move(options), .fit = FitTo(std::move(from_terms), Depth::kEstimate)};
-  const bool is_better = model.fit.rms <= (1 - Limits().worthwhile_gain) * added.fit.rms;
+  FitOptions from_terms = all.AddedTo(law_.options);
+  Model model{.options = from_terms, .fit = {}};
+  for (const std::string& term : all.terms) {
+    const std::optional<double> start = FindTerm(term)->start;
+    if (start && !HasTerm(law_.options, term)) from_terms.start[term] = *start;
+  }
+  model.fit = FitTo(std::move(from_terms), Depth::kEstimate);
+  const bool is_better = Gains(model.fit);
+  const Model added = std::exchange(base_, law_);
   FitResult last;
-  if (ObstacleTo(model).empty() && is_better) {
-    FitOptions from_here = model.options;
-    StartFrom(model.fit, from_here);
-    last = FitTo(std::move(from_here), Depth::kFull);
-  }
+  if (is_better && ObstacleTo(model).empty()) last = FitFrom(model);
   if (!IsKept(law, last)) {
     base_ = added;
     return {};
@@ -422,9 +426,7 @@ FitResult Selection::FitCommon(const FitResult& law) {
 FitResult Selection::FitLast(const FitResult& law) {
   FitResult last = FitTo(base_.options, Depth::kFull);
   if (!IsKept(law, last) || last.rms > (1 + Limits().worthwhile_gain) * base_.fit.rms) {
-    FitOptions from_here = base_.options;
-    StartFrom(base_.fit, from_here);
-    last = FitTo(std::move(from_here), Depth::kFull);
+    last = FitFrom(base_);
   }
   return IsKept(law, last) ? last : FitResult();
 }

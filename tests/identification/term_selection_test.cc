@@ -138,7 +138,7 @@ TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
   EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.25);
 }
 
-/// What the terms of measured loops have in common.
+/// Matches the names of all common terms, in any order.
 const auto kAllCommon = ::testing::UnorderedElementsAre(
     "slip_speed", "drag", "slip_trend", "slip_position_quadratic", "force_drift", "lag");
 
