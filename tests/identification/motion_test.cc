@@ -55,6 +55,43 @@ TEST(TurningPoints, OfASharpMotionAreWhereItsLinesMeet) {
   EXPECT_LT(LargestErrorOfTurns(Wave::kTriangle, 24), kRounding);
 }
 
+/// The largest distance of a contact whose force is read late from where the motion was, over the
+/// half range; but for the ends of the record, where it runs straight.
+double LargestErrorOfLateContact(Wave wave, int samples_a_cycle) {
+  constexpr int kFine = 64;
+  constexpr std::size_t kEnd = 5;  // samples
+  double largest = 0.0;
+  for (std::size_t begin = 0; begin < kFine; begin += 5) {
+    const auto displacement = Cycling(wave, kReach, 10.0, samples_a_cycle * kFine);
+    Stages stages(Sparse(testing::LoopOf(kLaw, displacement), begin, kFine));
+    TurnBetweenSamples(stages.data);
+    const ScaledRecord& scaled = stages.data.records[0];
+    const double step = scaled.time[1] - scaled.time[0];
+    for (std::size_t late = 0; late < 2 * kFine; late += 3) {
+      Motion motion;
+      Locate(scaled, TurnsOf(scaled), ContactMotion::kLate,
+             step * static_cast<double>(late) / kFine, models::Memory::kReturnPoint, {}, motion);
+      const std::vector<double>& contact = motion.paths.front().displacement;
+      for (std::size_t i = kEnd; i + kEnd < contact.size(); ++i) {
+        const double at = contact[i] * stages.data.length + scaled.units.displacement_reference;
+        const double was = displacement[begin + i * kFine - late];
+        largest = std::max(largest, std::abs(at - was) / kReach);
+      }
+    }
+  }
+  return largest;
+}
+
+TEST(TurningPoints, ArePassedByALateContactWhenTheMotionDidSo) {
+  for (const int samples : {12, 25, 50}) {
+    // Chords would be step²/8 off, and a turn at the sample up to step²/2.
+    const double step = 2 * M_PI / samples;
+    EXPECT_LT(LargestErrorOfLateContact(Wave::kSine, samples), std::pow(step, 3) / 15) << samples;
+  }
+  constexpr double kRounding = 1e-13;
+  EXPECT_LT(LargestErrorOfLateContact(Wave::kTriangle, 24), kRounding);
+}
+
 TEST(TurningPoints, OfAMotionThatIsNeitherAreTheSamples) {
   Generator generator(5);
   std::vector<double> noisy = Cycling(Wave::kSine, kReach, 3.0, 400);

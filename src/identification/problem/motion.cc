@@ -73,30 +73,87 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
   return p[0];
 }
 
-/// Moves a contact whose force is read late. It runs straight from sample to sample and turns where
-/// the record does, whatever the lag; beyond both ends of the record it rests.
+/// Returns where a motion that turns between its samples is between two of them: on the cubic
+/// through four. A second difference counts up to twice the other one, so that the motion runs
+/// straight beside a corner, and in the first and the last step.
+/// @param next  the later of the two samples
+double PositionOnCubic(const ScaledRecord& motion, std::size_t next, double time) {
+  const std::vector<double>& x = motion.displacement;
+  const std::vector<double>& t = motion.time;
+  const auto velocity = [&](std::size_t k) { return (x[k] - x[k - 1]) / (t[k] - t[k - 1]); };
+  const double straight = x[next - 1] + velocity(next) * (time - t[next - 1]);
+  if (next < 2 || next + 1 >= x.size()) return straight;
+  const double before = (velocity(next) - velocity(next - 1)) / (t[next] - t[next - 2]);
+  const double after = (velocity(next + 1) - velocity(next)) / (t[next + 1] - t[next - 1]);
+  const double most = 2 * std::min(std::abs(before), std::abs(after));
+  if (!std::isfinite(most)) return straight;
+  const double half_curvature =
+      std::lerp(std::clamp(before, -most, most), std::clamp(after, -most, most),
+                (time - t[next - 2]) / (t[next + 1] - t[next - 2]));
+  return straight + (time - t[next - 1]) * (time - t[next]) * half_curvature;
+}
+
+/// Holds when a motion turns between two samples, and as which power of time it comes and goes.
+struct TurnInTime {
+  double time;
+  double power;  // 2, or 1 where it turns sharply
+};
+
+/// @param next  the sample after the turn
+TurnInTime TimeOfTurn(const ScaledRecord& motion, std::size_t next, double displacement) {
+  constexpr double kSharp = 2.0 / 3;  // of the step; smooth motions take a third of it
+  const std::vector<double>& x = motion.displacement;
+  const std::vector<double>& t = motion.time;
+  const double step = t[next] - t[next - 1];
+  const double there = displacement - x[next - 1];
+  const double back = displacement - x[next];
+  // At the speeds of the steps before and after:
+  const double coming = there * (t[next - 1] - t[next - 2]) / (x[next - 1] - x[next - 2]);
+  const double going = back * (t[next + 1] - t[next]) / (x[next] - x[next + 1]);
+  const bool is_sharp = coming + going > kSharp * step;
+  const double share = is_sharp ? coming / (coming + going) : 1 / (1 + std::sqrt(back / there));
+  return {t[next - 1] + share * step, is_sharp ? 1.0 : 2.0};
+}
+
+/// Moves a contact whose force is read late. It turns where the record does, whatever the lag;
+/// beyond both ends of the record it rests. Where the record turns at its samples it runs straight
+/// between them.
 std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const models::Turn> turns,
                                    double lag, std::vector<double>& late) {
   const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
   const std::span<const double> x = motion.displacement;
-  const std::span<const double> time = motion.time;
+  const std::span<const double> t = motion.time;
   std::vector<models::Turn> moved;
-  std::size_t next = 1;  // the sample that the motion comes to next
-  const auto turn_before = [&](std::size_t end) {
-    while (moved.size() < turns.size() && turns[moved.size()].next <= end) {
+  const auto turn_until = [&](std::size_t count) {
+    while (moved.size() < count) {
       moved.push_back({late.size(), turns[moved.size()].displacement});
     }
   };
+  std::size_t next = 1;    // the sample that the motion comes to next
+  std::size_t before = 0;  // turns before this step
   for (const double read : record.time) {
-    const double at = std::clamp(read - lag, time.front(), time.back());
-    while (next + 1 < motion.size() && time[next] < at) ++next;
-    turn_before(next);
-    const double duration = time[next] - time[next - 1];
-    // Two samples may have the same time: the later one counts.
-    const double fraction = duration > 0 ? (at - time[next - 1]) / duration : 1.0;
-    late.push_back(std::lerp(x[next - 1], x[next], std::clamp(fraction, 0.0, 1.0)));
+    const double at = std::clamp(read - lag, t.front(), t.back());
+    while (next + 1 < motion.size() && t[next] < at) ++next;
+    while (before < turns.size() && turns[before].next < next) ++before;
+    const bool turns_here = before < turns.size() && turns[before].next == next;
+    const bool is_between = turns_here && turns[before].displacement != x[next - 1];
+    double position = x[next];  // of two samples of the same time the later one counts
+    std::size_t count = before + (turns_here ? 1 : 0);
+    if (is_between) {
+      const double extreme = turns[before].displacement;
+      const auto [time, power] = TimeOfTurn(motion, next, extreme);
+      const std::size_t end = at < time ? next - 1 : next;
+      if (at < time) count = before;
+      position = std::lerp(extreme, x[end], std::pow((time - at) / (time - t[end]), power));
+    } else if (t[next] > t[next - 1]) {
+      position = motion.turns_between ? PositionOnCubic(motion, next, at)
+                                      : std::lerp(x[next - 1], x[next],
+                                                  (at - t[next - 1]) / (t[next] - t[next - 1]));
+    }
+    turn_until(count);
+    late.push_back(position);
   }
-  turn_before(motion.size());
+  turn_until(turns.size());
   return moved;
 }
 
