@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,6 +67,42 @@ void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRe
                  fmt::format("must be > {:.4g}, the stiffness of the loop itself from end to end: "
                              "measure the rig again, or fit it",
                              stiffness));
+  }
+}
+
+/// Measures the loops without the forces of columns and terms whose factors are given: what is left
+/// is the contact's.
+void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& data,
+                              loop::PreparedRecords& prepared) {
+  if (options.fixed.empty() || data.is_forced()) return;
+  const std::vector states(data.records.size(), InitialState::kVirgin);
+  const Problem problem{&data, options.model, states, Parameters(data, options, states)};
+  const Parameters& parameters = problem.parameters;
+  std::vector<double> theta;
+  for (const Parameter& parameter : parameters) theta.push_back(parameter.theta);
+  std::vector<double> known(problem.size());
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Term& term = *parameters[p].term;
+    const bool is_shaped = std::ranges::any_of(parameters.free(), [&](std::size_t q) {
+      const std::string_view shapes = parameters[q].term->shapes;
+      return !shapes.empty() && term.name.starts_with(shapes);
+    });
+    if (!term.is_linear || term.presence == Presence::kOffsets || !parameters[p].fixed ||
+        theta[p] == 0 || is_shaped) {
+      continue;
+    }
+    AddColumn(problem, p, theta, -theta[p] * data.force * prepared.force_sense, known);
+  }
+  if (std::ranges::all_of(known, [](double force) { return force == 0; })) return;
+  auto of_record = known.begin();
+  for (loop::PreparedRecord& record : prepared.records) {
+    loop::RecordView contact = record.readings();
+    contact.displacement = record.displacement();
+    const std::span<double> force(of_record, record.size());
+    std::ranges::transform(force, contact.force, force.begin(), std::plus());
+    contact.force = force;
+    record.facts = loop::MeasureFacts(contact, record.reversals, prepared.force_sense);
+    of_record += std::ssize(force);
   }
 }
 
@@ -267,6 +304,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     data.prior_noise = NoiseWithoutPriors(records, given) / data.response_unit();
   }
   RequireRecords(given, data);
+  MeasureBesideKnownForces(given, data, prepared);
   RequireRigStifferThanLoop(given, prepared);
 
   const Attempt attempt{given, depth, prepared, drawn.get(), data, solver};

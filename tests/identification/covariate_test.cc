@@ -101,6 +101,28 @@ TEST(Covariate, IsRefusedIfItIsTheForce) {
               HasSubstr("'volts' is a linear function of 'force'"));
 }
 
+TEST(Covariate, OfAKnownFactorIsNoPartOfTheLoopThatIsMeasured) {
+  const FitResult whole = FitOne(NoisyLoop(3), {});
+  Record record = NoisyLoop(3);
+  for (double& force : record.force) force /= 2;
+  record.covariates = {{.name = "other cell", .unit = "N", .values = record.force}};
+  const FitResult fit =
+      FitOne(record, {.covariates = {"other cell"}, .fixed = {{"covariate_other_cell", -1.0}}});
+  const loop::LoopFacts& facts = fit.records[0].facts;
+  const loop::LoopFacts& expected = whole.records[0].facts;
+  EXPECT_NEAR(*facts.half_gap, *expected.half_gap, kNoiseFree * kLaw.slip_force);
+  EXPECT_NEAR(facts.peak_force, expected.peak_force, kNoiseFree * kLaw.slip_force);
+  EXPECT_NEAR(facts.energy_ratio, expected.energy_ratio, kNoiseFree);
+  EXPECT_NEAR(fit.law.slip_force, whole.law.slip_force, 1e-6 * kLaw.slip_force);
+  // With the force opposite to the motion the sign of a column stays that of the file.
+  for (double& force : record.force) force = -force;
+  record.covariates[0].values = record.force;
+  const FitResult opposite =
+      FitOne(record, {.covariates = {"other cell"}, .fixed = {{"covariate_other_cell", -1.0}}});
+  EXPECT_NEAR(*opposite.records[0].facts.half_gap, *expected.half_gap,
+              kNoiseFree * kLaw.slip_force);
+}
+
 TEST(Covariate, HasANameThatNeedsNoQuoting) {
   EXPECT_EQ(NameOfCovariate("6"), "covariate_6");
   EXPECT_EQ(NameOfCovariate("p"), "covariate_p");
