@@ -73,8 +73,12 @@ std::string MisfitShare(double over_half_gap) {
 }
 
 std::string NextStatement(const NextStep& next) {
-  return fmt::format("{}{}misfit {} → {} (tried)", next.text, next.text.empty() ? "" : ", ",
-                     PercentText(next.misfit_before), MisfitShare(next.misfit_after));
+  const std::string before = PercentText(next.misfit_before);
+  const std::string change = next.is_over_amplitude
+                                 ? fmt::format("{} of the half gap → {} of the amplitude", before,
+                                               PercentText(next.misfit_after))
+                                 : fmt::format("{} → {}", before, MisfitShare(next.misfit_after));
+  return fmt::format("{}{}misfit {} (tried)", next.text, next.text.empty() ? "" : ", ", change);
 }
 
 void RequireFitted(const Report& report, std::string_view what) {

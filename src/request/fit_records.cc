@@ -15,6 +15,7 @@
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/segments.h"
 #include "mindahl/request/fit_request.h"
@@ -209,13 +210,50 @@ void AddTerm(const std::string& name, const Record& record, FitOptions& options,
   step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
+/// Adds the law that was fitted to a step, where the program chose it: with the step another one
+/// may be the better one, and miss otherwise.
+void KeepLaw(const FitRequest& request, const FitOptions& options, report::NextStep& step) {
+  if (request.fit.model == nullptr) step.options += " --model " + std::string(options.model->name);
+}
+
+/// Fits the displacement in place of the force where an encoder reads it in few steps, and returns
+/// that where it describes the record as a whole: the noise is then where the steps are.
+std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request,
+                                                       const FitOptions& options,
+                                                       std::span<const Record> records,
+                                                       const FitResult& fit, FitResult& found) {
+  constexpr double kCoarse = 0.02;  // of the amplitude
+  const double amplitude = fit.WidestRecord().facts.amplitude;
+  const bool is_coarse = std::ranges::any_of(records, [&](const Record& record) {
+    return loop::EncoderStep(record.displacement) > kCoarse * amplitude;
+  });
+  if (!is_coarse) return std::nullopt;
+  FitOptions tried = MakeFitOptions(request);
+  tried.model = options.model;
+  tried.preparation.excitation = loop::Channel::kForce;
+  try {
+    found = identification::Fit(records, tried, Depth::kIntervals);
+  } catch (const InvalidArgument&) {
+    return std::nullopt;  // the options are those of a fit of the force
+  }
+  if (!found.converged || found.adequacy.verdict != AdequacyVerdict::kAdequate) return std::nullopt;
+  report::NextStep step{.text = "steps of the displacement as its noise",
+                        .options = "--noise-in displacement",
+                        .misfit_before = *fit.adequacy.misfit_over_half_gap,
+                        .misfit_after = found.adequacy.misfit / found.MisfitScale(),
+                        .is_over_amplitude = true};
+  KeepLaw(request, options, step);
+  return step;
+}
+
 /// Fits the record again with the term that explains most of what the law misses, where the law
 /// alone is not adequate; with the next one where it does not gain enough, or the slip force is
 /// lost.
-/// @param found  written: the fit of the step
+/// @param is_cut  are the records parts of their files? A fit of the displacement reads these whole
+/// @param found   written: the fit of the step
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
-                                             std::span<const Record> records, const FitResult& fit,
-                                             FitResult& found) {
+                                             std::span<const Record> records, bool is_cut,
+                                             const FitResult& fit, FitResult& found) {
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
@@ -225,15 +263,16 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
+  if (!is_cut) {
+    auto step = TryNoiseInDisplacement(request, options, records, fit, found);
+    if (step) return step;
+  }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
     FitOptions tried = options;
     report::NextStep step;
     AddTerm(name, records.front(), tried, step);
-    // With the term another law may be the better one, and miss otherwise.
-    if (request.fit.model == nullptr) {
-      step.options += fmt::format(" --model {}", options.model->name);
-    }
+    KeepLaw(request, options, step);
     try {
       found = identification::Fit(records, tried, Depth::kIntervals);
     } catch (const InvalidArgument&) {
@@ -334,7 +373,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::optional<report::NextStep> next;
   FitResult found;
   if (!request.chooses_terms) {
-    next = FindNextStep(request, asked.options, records, asked.fit, found);
+    next = FindNextStep(request, asked.options, records, !left_out.empty(), asked.fit, found);
   }
   const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion = FindDisproportion(asked.fit);

@@ -267,6 +267,9 @@ TEST(Answer, HasTheNextStepThatWasTried) {
       "--terms slip_position: a slip force that depends on the position, misfit 20 % → 10 % of "
       "the half gap (tried)");
   EXPECT_EQ(LineOf(Doubtful(), "next"), "");
+  input.next->is_over_amplitude = true;
+  EXPECT_THAT(LineOf(input, "next"),
+              HasSubstr("misfit 20 % of the half gap → 10 % of the amplitude (tried)"));
 }
 
 TEST(Answer, StatesAMisfitAsAFractionOfTheHalfGap) {

@@ -93,6 +93,32 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
               AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
 }
 
+TEST(NextStep, IsAFitOfTheDisplacementThatACoarseEncoderReads) {
+  constexpr double kAmplitude = 2.4e-6;  // 0.8 of gross slip
+  io::RecordFile file;
+  for (const double sine : testing::Sine(1.5, 400)) {
+    file.record.displacement.push_back(kAmplitude * sine);
+    file.lines.push_back(file.lines.size() + 2);
+  }
+  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 80.0},
+                                       file.record.displacement);
+  Generator generator(4);
+  for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
+  constexpr double kStep = kAmplitude / 5;
+  for (double& x : file.record.displacement) {
+    x = kStep * std::round(x / kStep + 0.15 * testing::Normal(generator));  // one count flickers
+  }
+  const report::Report made = FitRecords({}, {file});
+  ASSERT_TRUE(made.next);
+  EXPECT_EQ(made.next->options, "--noise-in displacement --model mindlin-dahl");
+  EXPECT_TRUE(made.next->is_over_amplitude);
+  FitRequest followed;
+  followed.fit.preparation.excitation = loop::Channel::kForce;
+  const identification::FitResult fit = FitRecords(followed, {file}).fit;
+  EXPECT_EQ(fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_DOUBLE_EQ(made.next->misfit_after, fit.adequacy.misfit / fit.MisfitScale());
+}
+
 TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   FitRequest request;
   request.contact.normal_loads = {{50, 0}, {100, 0}, {200, 0}};

@@ -23,10 +23,11 @@ struct Warning {
 
 /// A change of the request that was fitted again and lowers the misfit.
 struct NextStep {
-  std::string text;            ///< in words: "a slip force that depends on the position"
-  std::string options;         ///< to add to the command: "--terms slip_position"
-  double misfit_before = 0.0;  ///< Adequacy::misfit_over_half_gap of the fit that is reported
-  double misfit_after = 0.0;   ///< likewise, with the options
+  std::string text;                ///< in words: "a slip force that depends on the position"
+  std::string options;             ///< to add to the command: "--terms slip_position"
+  double misfit_before = 0.0;      ///< Adequacy::misfit_over_half_gap of the fit that is reported
+  double misfit_after = 0.0;       ///< likewise, with the options
+  bool is_over_amplitude = false;  ///< misfit_after, of a fit of the displacement, over X
   /// Force [N] of that fit, one list a record, for the page; may be empty.
   std::vector<std::vector<double>> fitted_force = {};
 };
