@@ -183,6 +183,9 @@ class Selection {
   };
 
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
+  [[nodiscard]] bool IsAdded(std::string_view name) const {
+    return std::ranges::find(added_, name) != added_.end();
+  }
   std::vector<TermCandidate*> Score();
   [[nodiscard]] bool IsRefused(TermCandidate& candidate) const;
   [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
@@ -205,7 +208,7 @@ class Selection {
   std::vector<TermCandidate> candidates_;
   Model law_;                       // without terms
   Model base_;                      // with the terms that were added
-  std::vector<std::string> added_;  // names of these candidates
+  std::vector<std::string> added_;  // names of these candidates, in their order
   std::vector<Alternative> alternatives_;
 };
 
@@ -229,7 +232,7 @@ std::vector<TermCandidate*> Selection::Score() {
   for (TermCandidate& candidate : candidates_) {
     std::erase_if(candidate.choice.terms,
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
-    choices.push_back(candidate.added ? TermChoice() : candidate.choice);
+    choices.push_back(IsAdded(candidate.name) ? TermChoice() : candidate.choice);
   }
   FitOptions as_fitted = base_.options;
   as_fitted.preparation.force_sense = base_.fit.force_sense;
@@ -237,7 +240,7 @@ std::vector<TermCandidate*> Selection::Score() {
   std::vector<TermCandidate*> scored;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     TermCandidate& candidate = candidates_[c];
-    if (candidate.added) continue;
+    if (IsAdded(candidate.name)) continue;
     const bool stays = candidate.obstacle == "confounded" || candidate.obstacle == "same_channel";
     if (!stays) candidate.obstacle = "";
     candidate.score = scores[c];
@@ -330,7 +333,6 @@ std::string_view Selection::ObstacleTo(const Model& model) const {
 bool Selection::Add(TermCandidate& candidate, Model model) {
   candidate.obstacle = ObstacleTo(model);
   if (!candidate.obstacle.empty()) return false;
-  candidate.added = true;
   added_.push_back(candidate.name);
   base_ = std::move(model);
   return true;
@@ -385,11 +387,11 @@ bool Selection::IsKept(const FitResult& law, const FitResult& fit) const {
 /// @param law  of Depth::kFull
 /// @returns a fit without parameters where it does not move
 FitResult Selection::FitCommon(const FitResult& law) {
-  std::vector<TermCandidate*> common;
+  std::vector<std::string> common;
   TermChoice all;
-  for (TermCandidate& candidate : candidates_) {
+  for (const TermCandidate& candidate : candidates_) {
     if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
-    common.push_back(&candidate);
+    common.push_back(candidate.name);
     const std::vector<std::string_view>& terms = FindTermGroup(candidate.name)->terms;
     all.terms.insert(all.terms.end(), terms.begin(), terms.end());
   }
@@ -408,14 +410,8 @@ FitResult Selection::FitCommon(const FitResult& law) {
     base_ = added;
     return {};
   }
-  for (TermCandidate& candidate : candidates_) candidate.added = false;
-  added_.clear();
+  added_ = std::move(common);
   alternatives_.clear();
-  for (TermCandidate* const candidate : common) {
-    candidate->added = true;
-    candidate->obstacle = "";
-    added_.push_back(candidate->name);
-  }
   base_.options = std::move(model.options);
   return last;
 }
@@ -444,7 +440,7 @@ TermSelection Selection::Run(FitResult law) {
     const bool is_settled =
         added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
     std::erase_if(alternatives_, [&](const Alternative& alternative) {
-      return std::ranges::find(added_, alternative.name) != added_.end() ||
+      return IsAdded(alternative.name) ||
              (is_settled && alternative.rms > Limits().larger_rms * last.rms);
     });
     IncludeAlternatives(alternatives_, Limits(), last);
@@ -453,11 +449,11 @@ TermSelection Selection::Run(FitResult law) {
     result.added = added_;
   } else {
     result.fit = std::move(law);
-    for (const std::string& name : added_) {
-      TermCandidate& candidate = *std::ranges::find(candidates_, name, &TermCandidate::name);
-      candidate.added = false;
-      candidate.obstacle = "confounded";
-    }
+  }
+  for (TermCandidate& candidate : candidates_) {
+    if (!IsAdded(candidate.name)) continue;
+    candidate.added = !result.added.empty();
+    candidate.obstacle = candidate.added ? "" : "confounded";
   }
   result.considered.assign(candidates_.begin(), candidates_.end());
   std::ranges::stable_sort(result.considered, std::greater(), &ConsideredTerm::gain);
