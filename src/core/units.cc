@@ -11,64 +11,61 @@ namespace mindahl {
 namespace {
 
 struct Entry {
-  Dimension dimension;
-  std::string_view symbol;
-  double numerator;
-  double denominator;
+  Unit unit;
   /// Other ways to write it, each between blanks; in lower case they count in any.
   std::string_view words = {};
 };
 
 using enum Dimension;
-constexpr std::array kUnits = {
-    Entry{kLength, "m", 1, 1, " meter meters metre metres м "},
-    Entry{kLength, "mm", 1, 1e3,
+const std::array kUnits = {
+    Entry{{"m", kLength, 1, 1}, " meter meters metre metres м "},
+    Entry{{"mm", kLength, 1, 1e3},
           " MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм "
           "1e-3m 10^-3m 10⁻³m "},
-    Entry{kLength, "um", 1, 1e6,
+    Entry{{"um", kLength, 1, 1e6},
           " um ㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм "
           "1e-6m 10^-6m 10⁻⁶m "},
-    Entry{kLength, "nm", 1, 1e9, " ㎚ nanometer nanometers "},
-    Entry{kLength, "cm", 1, 1e2, " ㎝ "},
-    Entry{kLength, "in", 254, 1e4, " inch inches \" "},
-    Entry{kLength, "ft", 3048, 1e4, " feet "},
-    Entry{kLength, "mil", 254, 1e7, " mils thou "},
-    Entry{kLength, "pm", 1, 1e12},
+    Entry{{"nm", kLength, 1, 1e9}, " ㎚ nanometer nanometers "},
+    Entry{{"cm", kLength, 1, 1e2}, " ㎝ "},
+    Entry{{"in", kLength, 254, 1e4}, " inch inches \" "},
+    Entry{{"ft", kLength, 3048, 1e4}, " feet "},
+    Entry{{"mil", kLength, 254, 1e7}, " mils thou "},
+    Entry{{"pm", kLength, 1, 1e12}},
     // A mass that stands for a force is its weight.
-    Entry{kForce, "N", 1, 1, " newton newtons 牛 牛顿 Н "},
-    Entry{kForce, "mN", 1, 1e3, " millinewton millinewtons millin 1e-3N 10^-3N 10⁻³N "},
-    Entry{kForce, "uN", 1, 1e6, " 1e-6N 10^-6N 10⁻⁶N "},
-    Entry{kForce, "kN", 1e3, 1, " KN kilonewton kilonewtons 千牛 千牛顿 кН 1e3N 10^3N 10³N "},
-    Entry{kForce, "MN", 1e6, 1},
-    Entry{kForce, "lbf", 4.4482216152605, 1, " lb lbs pound pounds "},
-    Entry{kForce, "kgf", 9.80665, 1, " kg ㎏ ㎏f kp кгс "},
-    Entry{kForce, "kip", 4448.2216152605, 1, " kips "},
-    Entry{kForce, "gf", 9.80665, 1e3, " g gram grams gramm "},
-    Entry{kForce, "daN", 10, 1},
-    Entry{kForce, "dyn", 1, 1e5, " dyne dynes "},
-    Entry{kForce, "ozf", 4.4482216152605, 16, " oz "},
-    Entry{kForce, "cN", 1, 1e2},
-    Entry{kAngle, "rad", 1, 1, " radian radians "},
-    Entry{kAngle, "mrad", 1, 1e3, " 1e-3rad 10^-3rad 10⁻³rad "},
-    Entry{kAngle, "deg", std::numbers::pi, 180, " ° degree degrees 度 "},
-    Entry{kAngle, "rev", 2 * std::numbers::pi, 1, " revolutions "},
-    Entry{kTorque, "N m", 1, 1},
-    Entry{kTorque, "N mm", 1, 1e3},
-    Entry{kTime, "s", 1, 1, " sec secs second seconds sek seg 秒 с "},
-    Entry{kTime, "ms", 1, 1e3, " msec 毫秒 milliseconds millis 1e-3s 10^-3s 10⁻³s "},
-    Entry{kTime, "us", 1, 1e6, " usec micros 1e-6s 10^-6s 10⁻⁶s "},
-    Entry{kTime, "ns", 1, 1e9, " nsec nanos "},
-    Entry{kTime, "min", 60, 1, " minute minutes "},
-    Entry{kTime, "h", 3600, 1, " hour hours hr "},
-    Entry{kPressure, "Pa", 1, 1},
-    Entry{kPressure, "hPa", 1e2, 1},
-    Entry{kPressure, "kPa", 1e3, 1},
-    Entry{kPressure, "MPa", 1e6, 1},
-    Entry{kPressure, "GPa", 1e9, 1},
-    Entry{kPressure, "mbar", 1e2, 1},
-    Entry{kPressure, "bar", 1e5, 1},
-    Entry{kPressure, "psi", 6894.757293168, 1},
-    Entry{kPressure, "kgf/cm2", 98066.5, 1, " kgf/cm² "},
+    Entry{{"N", kForce, 1, 1}, " newton newtons 牛 牛顿 Н "},
+    Entry{{"mN", kForce, 1, 1e3}, " millinewton millinewtons millin 1e-3N 10^-3N 10⁻³N "},
+    Entry{{"uN", kForce, 1, 1e6}, " 1e-6N 10^-6N 10⁻⁶N "},
+    Entry{{"kN", kForce, 1e3, 1}, " KN kilonewton kilonewtons 千牛 千牛顿 кН 1e3N 10^3N 10³N "},
+    Entry{{"MN", kForce, 1e6, 1}},
+    Entry{{"lbf", kForce, 4.4482216152605, 1}, " lb lbs pound pounds "},
+    Entry{{"kgf", kForce, 9.80665, 1}, " kg ㎏ ㎏f kp кгс "},
+    Entry{{"kip", kForce, 4448.2216152605, 1}, " kips "},
+    Entry{{"gf", kForce, 9.80665, 1e3}, " g gram grams gramm "},
+    Entry{{"daN", kForce, 10, 1}},
+    Entry{{"dyn", kForce, 1, 1e5}, " dyne dynes "},
+    Entry{{"ozf", kForce, 4.4482216152605, 16}, " oz "},
+    Entry{{"cN", kForce, 1, 1e2}},
+    Entry{{"rad", kAngle, 1, 1}, " radian radians "},
+    Entry{{"mrad", kAngle, 1, 1e3}, " 1e-3rad 10^-3rad 10⁻³rad "},
+    Entry{{"deg", kAngle, std::numbers::pi, 180}, " ° degree degrees 度 "},
+    Entry{{"rev", kAngle, 2 * std::numbers::pi, 1}, " revolutions "},
+    Entry{{"N m", kTorque, 1, 1}},
+    Entry{{"N mm", kTorque, 1, 1e3}},
+    Entry{{"s", kTime, 1, 1}, " sec secs second seconds sek seg 秒 с "},
+    Entry{{"ms", kTime, 1, 1e3}, " msec 毫秒 milliseconds millis 1e-3s 10^-3s 10⁻³s "},
+    Entry{{"us", kTime, 1, 1e6}, " usec micros 1e-6s 10^-6s 10⁻⁶s "},
+    Entry{{"ns", kTime, 1, 1e9}, " nsec nanos "},
+    Entry{{"min", kTime, 60, 1}, " minute minutes "},
+    Entry{{"h", kTime, 3600, 1}, " hour hours hr "},
+    Entry{{"Pa", kPressure, 1, 1}},
+    Entry{{"hPa", kPressure, 1e2, 1}},
+    Entry{{"kPa", kPressure, 1e3, 1}},
+    Entry{{"MPa", kPressure, 1e6, 1}},
+    Entry{{"GPa", kPressure, 1e9, 1}},
+    Entry{{"mbar", kPressure, 1e2, 1}},
+    Entry{{"bar", kPressure, 1e5, 1}},
+    Entry{{"psi", kPressure, 6894.757293168, 1}},
+    Entry{{"kgf/cm2", kPressure, 98066.5, 1}, " kgf/cm² "},
 };
 
 /// Finds the torque that two units make, a force by a length: "N·m", "Nm", "kgf.cm", "ft-lb".
@@ -114,20 +111,17 @@ std::optional<Unit> FindUnit(std::string_view symbol) {
   const std::string lower = LowerCase(word);
   const auto is_it = [&](const Entry& entry) {
     // A single letter, or two, differ by their case: g and G, mN and MN.
-    return entry.symbol == ascii || entry.words.find(word) != word.npos ||
+    return entry.unit.symbol == ascii || entry.words.find(word) != word.npos ||
            (symbol.size() >= 3 && entry.words.find(lower) != word.npos);
   };
   const auto* const entry = std::ranges::find_if(kUnits, is_it);
-  if (entry == kUnits.end()) return FindProduct(ascii);
-  return Unit{std::string(entry->symbol), entry->dimension, entry->numerator, entry->denominator};
+  return entry == kUnits.end() ? FindProduct(ascii) : entry->unit;
 }
 
 std::string UnitSymbols(Dimension dimension) {
   std::string symbols;
-  for (const Entry& entry : kUnits) {
-    if (entry.dimension != dimension) continue;
-    if (!symbols.empty()) symbols += ", ";
-    symbols += entry.symbol;
+  for (const auto& [unit, words] : kUnits) {
+    if (unit.dimension == dimension) symbols += (symbols.empty() ? "" : ", ") + unit.symbol;
   }
   return symbols;
 }
