@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <optional>
 #include <system_error>
-#include <vector>
 
 #include "core/text.h"
 
@@ -64,26 +63,22 @@ std::string_view CellCursor::Take() {
   const char* end = at_;
   if (at_ == end_ || *at_ != '"') {
     while (end != end_ && !IsDelimiter(*end)) ++end;
-    const char* last = end;
-    while (last != at_ && (last[-1] == ' ' || last[-1] == '\t' || last[-1] == '\r')) --last;
-    const std::string_view cell(at_, static_cast<std::size_t>(last - at_));
+    const std::string_view cell = Trimmed({at_, end});
     GoBehind(end);
     return cell;
   }
   unescaped_.clear();
-  for (++end; end != end_; ++end) {
-    if (*end == '"') {
-      if (end + 1 == end_ || end[1] != '"') break;
+  is_open_ = true;
+  for (++end; end != end_ && (is_open_ || !IsDelimiter(*end)); ++end) {
+    if (is_open_ && *end == '"') {
+      is_open_ = end + 1 != end_ && end[1] == '"';
+      if (!is_open_) continue;
       ++end;
     }
     unescaped_ += *end;
   }
-  is_open_ = end == end_;
-  has_next_ = !is_open_;
-  if (is_open_) return unescaped_.insert(0, 1, '"');
-  for (++end; end != end_ && !IsDelimiter(*end); ++end) unescaped_ += *end;
   GoBehind(end);
-  return Trimmed(unescaped_);
+  return is_open_ ? unescaped_.insert(0, 1, '"') : Trimmed(unescaped_);
 }
 
 Cell ReadCell(std::string_view text, char decimal_mark) {

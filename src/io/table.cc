@@ -364,14 +364,11 @@ bool TableReader::Read() {
   while (!text.empty()) {
     ++line_;
     const std::string_view row = TakeLine(text);
-    const std::size_t first = row.starts_with(' ') ? row.find_first_not_of(' ') : 0;
+    const std::size_t first = row.find_first_not_of(' ');
     const char front = first < row.size() ? row[first] : ' ';
     const bool is_number = IsDigit(front) || front == '-';
-    const bool may_be_none = !is_number && !IsLetter(front);
-    if (may_be_none && (IsBlankOrComment(row) || row.find_first_not_of(no_content) == row.npos)) {
-      continue;
-    }
-    if (!is_number && IsText(row)) continue;
+    const auto is_blank = [&] { return row.find_first_not_of(no_content) == row.npos; };
+    if (!is_number && (IsBlankOrComment(row) || is_blank() || IsText(row))) continue;
     EndText();
     ReadRow(row);
     front_ = front;
@@ -464,9 +461,8 @@ bool TableReader::IsText(std::string_view row) {
   if (IsLetter(row.front()) && row.front() == front_) return false;
   CellCursor cells(row, layout_.delimiter);
   for (std::size_t k = 0; k < layout_.text_column && cells.has_next(); ++k) cells.Take();
-  double number = 0.0;
-  if (layout_.text_column == table_.columns.size() || cells.TakeNumber(number)) return false;
-  const std::string cell(cells.has_next() ? cells.Take() : std::string_view());
+  if (layout_.text_column == table_.columns.size()) return false;
+  const std::string_view cell = cells.has_next() ? cells.Take() : std::string_view();
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;
   text_line_ = line_;
