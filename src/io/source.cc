@@ -68,10 +68,6 @@ std::string EncodingOf(std::string_view head) {
   return is_japanese ? "CP932" : "WINDOWS-1252";
 }
 
-[[noreturn]] void ThrowCannotRead(const std::string& name, const char* reason) {
-  Refuse("cannot read '{}': {}", name, reason);
-}
-
 std::shared_ptr<gzFile_s> OpenedForReading(const std::filesystem::path& path) {
   if (path != kStandardInput) return {gzopen(path.c_str(), "rb"), gzclose};
   // Nobody closes standard input.
@@ -99,7 +95,7 @@ std::string ForMessage(std::string_view text) {
 
 LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
     : name_(NameOfInput(path)), encoding_(std::move(encoding)), file_(OpenedForReading(path)) {
-  if (!file_) ThrowCannotRead(name_, std::strerror(errno));
+  if (!file_) Refuse("cannot read '{}': {}", name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
   piece_ = std::make_unique_for_overwrite<char[]>(kPiece);  // of a short file most is not touched
   Read();
@@ -125,7 +121,7 @@ void LinePieces::Read() {
   int error = Z_OK;
   const char* const reason = gzerror(file_.get(), &error);
   if (count < 0 || (error != Z_OK && error != Z_STREAM_END)) {
-    ThrowCannotRead(name_, error == Z_ERRNO ? std::strerror(errno) : reason);
+    Refuse("cannot read '{}': {}", name_, error == Z_ERRNO ? std::strerror(errno) : reason);
   }
   const std::string_view bytes(piece_.get(), static_cast<std::size_t>(count));
   const bool is_first = bytes_ == 0;
