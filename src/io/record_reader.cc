@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <ranges>
 #include <utility>
 
 #include "io/roles.h"
@@ -22,15 +21,12 @@ void RequireNoSignBit(const CsvTable& table, const Quantity& quantity) {
   constexpr double kBit = 1024.0;
   const std::size_t column = quantity.first_column();
   const Column& of = table.columns[column];
-  const auto is_part = [](double value) {
-    return std::isfinite(value) && value != std::floor(value);
-  };
-  const auto is_low = [](double value) { return value < kBit; };
-  if (of.least < 0 || of.least >= kBit || of.greatest < kBit || of.greatest >= 2 * kBit ||
-      std::ranges::any_of(of.values, is_part)) {
-    return;
+  if (of.least < 0 || of.least >= kBit || of.greatest < kBit || of.greatest >= 2 * kBit) return;
+  double below = 0.0;
+  for (const double value : of.values) {
+    if (std::isfinite(value) && value != std::floor(value)) return;
+    if (value < kBit) below = std::max(below, value);
   }
-  const double below = std::ranges::max(of.values | std::views::filter(is_low));
   if (below >= kBit / 2) return;
   Refuse(
       "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the {}: "
@@ -83,34 +79,29 @@ class RecordBuilder {
   /// Returns the columns that are used, from 0.
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
 
-  /// Appends the rows of a table, up to one that is refused; those without a number in a column
-  /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
+  /// Fills samples, of which there are none, with the rows of a table, up to one that is refused;
+  /// those without a number in a column that is used are left out, up to one in a hundred, or all
+  /// where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
-  std::string Add(const CsvTable& table, Samples& samples) {
-    const auto resize = [&](std::size_t size) {
-      samples.lines.resize(size);
-      if (interval_ > 0) samples.time.resize(size);
-      for (const Quantity& of : quantities_) (samples.*RulesOf(of.role).values).resize(size);
-    };
-    std::size_t kept = samples.lines.size();
-    resize(kept + table.rows());
-    std::vector<double*> values(quantities_.size());  // of the quantities
-    std::ranges::transform(quantities_, values.begin(), [&](const Quantity& of) {
-      return (samples.*RulesOf(of.role).values).data();
-    });
+  std::string Fill(Samples& samples, const CsvTable& table) {
+    std::vector<double*> values;  // of the quantities
+    for (const Quantity& of : quantities_) {
+      (samples.*RulesOf(of.role).values).resize(table.rows());
+      values.push_back((samples.*RulesOf(of.role).values).data());
+    }
     LeftOutRows& left_out = file_.left_out;
     std::string refusal;
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
+      const std::size_t kept = samples.lines.size();
       bool is_whole = true;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        const double value = quantities_[k].ValueIn(table, row);
-        values[k][kept] = quantities_[k].unit.ToSi(value);
+        values[k][kept] = quantities_[k].unit.ToSi(quantities_[k].ValueIn(table, row));
         is_whole = is_whole && std::isfinite(values[k][kept]);
       }
-      if (interval_ > 0) samples.time[kept] = static_cast<double>(rows_) * interval_;
-      if (is_whole && (samples.time.empty() || samples.time[kept] >= last_time_)) {
-        if (!samples.time.empty()) last_time_ = samples.time[kept];
-        samples.lines[kept++] = table.lines[row];
+      if (is_whole && (!file_.time || samples.time[kept] >= last_time_)) {
+        if (file_.time) last_time_ = samples.time[kept];
+        if (interval_ > 0) samples.time.push_back(static_cast<double>(rows_) * interval_);
+        samples.lines.push_back(table.lines[row]);
         continue;
       }
       bool is_missing = false;
@@ -121,7 +112,9 @@ class RecordBuilder {
         left_out.fault = fault;
       }
     }
-    resize(kept);
+    for (const Quantity& of : quantities_) {
+      (samples.*RulesOf(of.role).values).resize(samples.lines.size());
+    }
     // One in a hundred, rounded up from a hundred on.
     constexpr std::size_t kOneIn = 100;
     const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
@@ -219,7 +212,7 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other) {
 RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
   RecordBuilder builder(table, asked);
   Samples samples;
-  std::string fault = builder.Add(table, samples);
+  std::string fault = builder.Fill(samples, table);
   RecordFile& file = builder.file();
   if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
   if (!fault.empty()) throw InputError(fault);
@@ -257,14 +250,11 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
     }
     Column& added = table.columns.emplace_back(ReadName(name));
     added.values.assign(values.begin(), values.end());
-    const auto find = [&](auto is_fault, std::string& said) {
-      const auto fault = std::ranges::find_if(values, is_fault);
-      if (fault == values.end()) return;
-      said = fmt::format("{}:{}:{}: holds no number", table.file, fault - values.begin() + 1,
-                         table.columns.size());
-    };
-    find([](double value) { return std::isnan(value); }, added.missing);
-    find([](double value) { return std::isinf(value); }, added.broken);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      std::string& said = std::isnan(values[row]) ? added.missing : added.broken;
+      if (std::isfinite(values[row]) || !said.empty()) continue;
+      said = fmt::format("{}:{}:{}: holds no number", table.file, row + 1, table.columns.size());
+    }
   }
   Observe(table.columns);
   return RecordIn(table, asked);
@@ -310,12 +300,11 @@ const RecordFile& RecordStream::layout() const { return state_->builder.file(); 
 
 bool RecordStream::Next(Samples& samples) {
   auto& [reader, builder, has_rows, refusal] = *state_;
-  for (const auto column : loop::kRecordColumns) (samples.*column).clear();
-  samples.lines.clear();
+  samples = {};
   while (samples.lines.empty()) {
     if (!refusal.empty()) throw InputError(refusal);
     const bool goes_on = std::exchange(has_rows, false) || reader.Read();
-    refusal = builder.Add(reader.table(), samples);
+    refusal = builder.Fill(samples, reader.table());
     reader.KeepColumns(builder.wanted());
     if (!goes_on && refusal.empty()) return false;
   }
