@@ -69,10 +69,6 @@ std::string WordsIn(std::string_view name) {
   return words.back() == ' ' ? words : words + ' ';
 }
 
-std::size_t CountWords(std::string_view words) {
-  return static_cast<std::size_t>(std::ranges::count(words, ' ')) - 1;
-}
-
 /// True for a word of a language that does not part its words by blanks.
 bool IsUnparted(std::string_view word) { return static_cast<unsigned char>(word.front()) >= 0xE3; }
 
@@ -91,8 +87,9 @@ std::size_t MatchEnd(std::string_view entry, std::string_view words) {
 void FindWord(Column& column) {
   const std::string written = WordsIn(column.name);
   const std::string words = LowerCase(written);
+  const std::vector<std::string_view> parts = PartsOf(Trimmed(written), ' ');
   std::string only;  // of one letter, where no other words but remarks are with it
-  for (const std::string_view word : PartsOf(Trimmed(written), ' ')) {
+  for (const std::string_view word : parts) {
     if (!Lists(kRemarks, LowerCase(word))) only += word;
   }
   std::tuple<std::size_t, std::size_t, int> best{0, 0, 0};
@@ -103,7 +100,7 @@ void FindWord(Column& column) {
                               : only == entry ? words.size()
                                               : 0;
       if (end == 0) continue;
-      const std::size_t size = is_letter           ? CountWords(words)
+      const std::size_t size = is_letter           ? parts.size()
                                : IsUnparted(entry) ? CharactersIn(entry)
                                                    : PartsOf(entry, ' ').size();
       const std::tuple found{size, end, -row.rank};
@@ -120,7 +117,7 @@ void FindWord(Column& column) {
   };
   column.is_lesser = has_any(kLesserWords);
   if (column.unit.empty() && (column.rank == kRatio || has_any(kRatios))) column.unit = kRatioUnit;
-  column.other_words = CountWords(words) - std::min(CountWords(words), std::get<0>(best));
+  column.other_words = parts.size() - std::min(parts.size(), std::get<0>(best));
 }
 
 /// The text in brackets, or the cell itself: "[mm]", "(mm)" and "mm" are "mm".

@@ -35,12 +35,8 @@ int EvidenceFor(const Column& column, Role role) {
   // A normal load is one by its name alone.
   if (!is_named && (role == Role::kNormalLoad || column.names(Role::kNormalLoad))) return 0;
   const bool is_of_unit = MayHaveRole(column.dimension, role);
-  int found = 0;
-  if (is_of_unit) {
-    found = kUnit;
-  } else if (role == Role::kTime && column.is_clock && (is_named || column.word.empty())) {
-    found = kUnit - kStep;
-  }
+  const bool is_clock = role == Role::kTime && column.is_clock && (is_named || column.word.empty());
+  int found = is_of_unit ? kUnit : is_clock ? kUnit - kStep : 0;
   if (is_named) {
     const int others = std::min<int>(static_cast<int>(column.other_words), kStep - 1);
     const bool may_be = column.unit.empty() || is_of_unit;
@@ -128,14 +124,10 @@ void ReadSum(std::string_view rest, const CsvTable& table, const std::string& wh
 /// is called by number behind '#'.
 /// @throws InputError for an unknown or ambiguous one
 Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role) {
-  Quantity quantity{.role = role};
   std::string_view text = Trimmed(given);
-  if (!NumberIn<std::size_t>(text)) {
-    if (const auto named = table.Named(text, role)) {
-      quantity.terms = {{*named}};
-      return quantity;
-    }
-  }
+  const auto named = NumberIn<std::size_t>(text) ? std::nullopt : table.Named(text, role);
+  if (named) return {.role = role, .terms = {{*named}}};
+  Quantity quantity{.role = role};
   if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
     quantity.given_unit = Trimmed(text.substr(open + 1, text.size() - open - 2));
     text = Trimmed(text.substr(0, open));
@@ -157,9 +149,9 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   const Column& of = table.columns[first];
   const std::string label = table.Label(first);
   const bool is_time = quantity.role == Role::kTime;
-  const bool is_given = !quantity.given_unit.empty() || (is_time && of.is_clock);
   std::string stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
   if (is_time && of.is_clock) stamp = quantity.given_unit = "s";
+  const bool is_given = !quantity.given_unit.empty();
   std::set<std::string> stated;
   for (const Quantity::Term& term : quantity.terms) {
     stated.insert(is_given ? quantity.given_unit : table.columns[term.column].unit);
@@ -194,7 +186,7 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
 class RoleAssigner {
  public:
   RoleAssigner(const CsvTable& table, std::vector<std::string>& notes)
-      : table_(table), file_(table.file), notes_(notes), taken_(table.columns.size()) {}
+      : table_(table), notes_(notes), taken_(table.columns.size()) {}
 
   std::vector<Quantity> Assign(const RecordColumns& asked) && {
     const bool has_load = asked.normal_load != "none";
@@ -203,8 +195,8 @@ class RoleAssigner {
       roles_.push_back(ReadQuantity(is_none ? "" : asked.*RulesOf(role).given, table_, role));
       for (const Quantity::Term& term : roles_.back().terms) {
         if (taken_[term.column]) {
-          Refuse("{}: {} is chosen for the {} and for another quantity: choose two columns", file_,
-                 table_.Label(term.column), RulesOf(role).name);
+          Refuse("{}: {} is chosen for the {} and for another quantity: choose two columns",
+                 table_.file, table_.Label(term.column), RulesOf(role).name);
         }
         taken_[term.column] = true;
       }
@@ -239,7 +231,7 @@ class RoleAssigner {
   }
   template <typename... Parts>
   void Note(fmt::format_string<Parts...> text, Parts&&... parts) {
-    notes_.push_back(file_ + ": " + fmt::format(text, std::forward<Parts>(parts)...));
+    notes_.push_back(table_.file + ": " + fmt::format(text, std::forward<Parts>(parts)...));
   }
 
   /// True if the columns suit an angle and a torque better than a displacement and a force.
@@ -320,7 +312,7 @@ class RoleAssigner {
   }
 
   [[noreturn]] void ThrowNoColumn(Role role) {
-    Refuse("{}: no column for the {}: {}: choose it with {}, by name or number", file_,
+    Refuse("{}: no column for the {}: {}: choose it with {}, by name or number", table_.file,
            RulesOf(role).name, table_.Listing(), RulesOf(role).option);
   }
 
@@ -336,13 +328,12 @@ class RoleAssigner {
     Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "
         "{} with {}, by name or number: {}",
-        file_, table_.lines.front(), column + 1, table_.Label(column),
+        table_.file, table_.lines.front(), column + 1, table_.Label(column),
         of.trend > 0 ? "grows" : "falls", table_.Label(Of(other).first_column()),
         RulesOf(role).name, RulesOf(role).option, table_.Listing());
   }
 
   const CsvTable& table_;
-  const std::string& file_;
   std::vector<std::string>& notes_;
   std::vector<bool> taken_;
   std::vector<Quantity> roles_;  // in the order of Role
