@@ -19,14 +19,6 @@ void RequireWritten(const std::filesystem::path& path, int error) {
   if (error != 0) Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
 }
 
-/// Returns where a file is written before it is renamed.
-std::string TemporaryNameOf(const std::filesystem::path& file) {
-  static std::atomic<unsigned> counter = 0;
-  const std::string name =
-      fmt::format(".{}.{}.{}.tmp", file.filename().string(), ProcessNumber(), counter++);
-  return (file.parent_path() / name).string();
-}
-
 }  // namespace
 
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
@@ -39,7 +31,11 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const bool replaces = !is_device && (!is_old || std::filesystem::is_regular_file(old));
   // A link stays one.
   const std::filesystem::path target = replaces && is_old ? std::filesystem::canonical(path) : path;
-  const std::string name = TemporaryNameOf(target);
+  static std::atomic<unsigned> counter = 0;
+  const std::string name =
+      (target.parent_path() /
+       fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
+          .string();
   int file = -1;
   int fault = replaces ? OpenFile(name, Opening::kNew, file)
                        : OpenFile(path.string(), Opening::kExisting, file);

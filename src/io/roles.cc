@@ -161,25 +161,24 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   std::string assumed = symbols.substr(0, symbols.find(','));
   const auto unit = FindUnit(symbol);
   const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
-  if (unit &&
-      (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear))) {
-    quantity.unit = *unit;
-  } else if (is_given || stated.size() > 1 || (!symbol.empty() && !quantity.is_scaled)) {
+  const bool is_known =
+      unit && (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear));
+  const bool may_be_unknown = !is_given && (symbol.empty() || quantity.is_scaled);
+  if (!is_known && (!may_be_unknown || stated.size() > 1)) {
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",
         is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
         rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
-  } else {
-    if (symbol.empty()) {
-      quantity.has_no_unit = true;
-      if (!stamp.empty()) assumed = stamp;
-      notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                  table.file, rules.name, label, assumed, rules.option, first + 1,
-                                  assumed));
-    }
-    quantity.unit = *FindUnit(assumed);
   }
+  if (symbol.empty()) {
+    quantity.has_no_unit = true;
+    if (!stamp.empty()) assumed = stamp;
+    notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
+                                table.file, rules.name, label, assumed, rules.option, first + 1,
+                                assumed));
+  }
+  quantity.unit = is_known ? *unit : *FindUnit(assumed);
   if (!stamp.empty() && stamp == quantity.unit.symbol) quantity.offset -= of.first;
 }
 
@@ -320,10 +319,8 @@ class RoleAssigner {
   /// of the other role go to and fro.
   void RequireMoving(Role role, Role other) {
     const Column& of = ColumnOf(role);
-    if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= kUnit || of.trend == 0 ||
-        !ColumnOf(other).goes_to_and_fro) {
-      return;
-    }
+    const bool has_unit = !Of(role).given_unit.empty() || EvidenceFor(of, role) >= kUnit;
+    if (has_unit || of.trend == 0 || !ColumnOf(other).goes_to_and_fro) return;
     const std::size_t column = Of(role).first_column();
     Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
-#include <system_error>
 #include <utility>
 
 #include "mindahl/core/error.h"

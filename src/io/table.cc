@@ -222,7 +222,7 @@ class Reading {
         layout_.units_row = row.text;
         continue;
       }
-      const bool is_adjacent = names_.empty() && (k + 1 == data_ || k + 1 == header);
+      const bool is_adjacent = names_.empty() && k + 1 == header;
       const auto known = std::ranges::count_if(*cells, [](const std::string& cell) {
         const Column column = ReadName(cell);
         return !column.unit.empty() || !column.word.empty();
@@ -240,7 +240,6 @@ class Reading {
       names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
       layout_.names_row = std::exchange(layout_.units_row, {});
     }
-    const bool has_rows = data_ > 0 && !rows_[data_ - 1].is_comment;
     for (const Row& row : std::span(rows_).first(data_)) {
       if (row.is_comment || !row.cells.back().starts_with('"')) continue;
       Refuse("{}:{}: a quotation mark opened here is never closed in its line", table.file,
@@ -248,7 +247,7 @@ class Reading {
     }
     if (header < data_) {
       table.header_line = rows_[header].line;
-    } else if (has_rows) {
+    } else if (data_ > 0 && !rows_[data_ - 1].is_comment) {
       const Row& row = rows_[data_ - 1];
       Refuse(
           "{}:{}: '{}' is neither a row of data nor a header for line {}: name every column, begin "
