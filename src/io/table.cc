@@ -31,7 +31,6 @@ std::string_view TakeLine(std::string_view& text) {
 struct Row {
   std::string_view text = {};
   std::size_t line = 0;
-  std::size_t offset = 0;
   bool is_comment = false;  // the last above all rows, where names may stand
   Strings cells = {};
   std::vector<Cell::Kind> kinds = {};
@@ -173,7 +172,6 @@ class Reading {
     // Else text is in every row, each time in another column.
     if (data == rows_.end()) data = std::ranges::find(rows_, false, &Row::is_comment);
     data_ = static_cast<std::size_t>(data - rows_.begin());
-    layout_.data_offset = data->offset;
     layout_.data_line = data->line;
     for (const Row& row : std::span(rows_).first(data_)) {
       const bool may_be = is_labview && !mostly_numbers_[0] && row.cells.size() > 1;
@@ -272,8 +270,7 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
   std::vector<Row> sampled;
   std::size_t line = 0;
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
-    Row row{.line = ++line, .offset = text.size() - rest.size()};
-    row.text = TakeLine(rest);
+    Row row{.text = TakeLine(rest), .line = ++line};
     row.is_comment = IsBlankOrComment(row.text);
     const bool has_comment = !sampled.empty() && sampled.front().is_comment;
     if (!row.is_comment) {
@@ -352,8 +349,6 @@ TableReader::TableReader(const std::filesystem::path& path, const std::string& e
     : pieces_(path, encoding), first_(pieces_.Next()), table_{.file = NameOfInput(path)} {
   if (!pieces_.note().empty()) table_.notes.push_back(pieces_.note());
   layout_ = FindLayout(first_, table_);
-  first_.remove_prefix(layout_.data_offset);
-  line_ = layout_.data_line - 1;
 }
 
 bool TableReader::Read() {
@@ -361,8 +356,8 @@ bool TableReader::Read() {
   std::string_view text = first_.empty() ? pieces_.Next() : std::exchange(first_, {});
   const bool is_end = text.empty();
   while (!text.empty()) {
-    ++line_;
     const std::string_view row = TakeLine(text);
+    if (++line_ < layout_.data_line) continue;
     const std::size_t first = row.find_first_not_of(' ');
     const char front = first < row.size() ? row[first] : ' ';
     const bool is_number = IsDigit(front) || front == '-';

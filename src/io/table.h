@@ -61,8 +61,7 @@ struct Layout {
   char delimiter = ',', decimal_mark = '.';
   std::vector<bool> is_wanted = {};            // of each column; found: it holds some numbers
   std::size_t text_column = 0;                 // mostly holds numbers: text is seen there
-  std::size_t data_offset = 0;                 // start of the first data row [bytes]
-  std::size_t data_line = 0;                   // its physical line
+  std::size_t data_line = 0;                   // physical line of the first data row
   std::string names_row = {}, units_row = {};  // as they stand in the file: blocks repeat them
 };
 
