@@ -60,9 +60,9 @@ int ScoreFor(const Column& column, Role role, std::optional<bool> turns) {
 std::string UnitOfStamp(double number) {
   constexpr double kFrom2001 = 1e9;  // [s] since 1970, to 2100
   constexpr double kTo2100 = 4.1e9;
-  for (const auto& [scale, unit] :
-       {std::pair(1.0, "s"), std::pair(1e3, "ms"), std::pair(1e6, "us"), std::pair(1e9, "ns")}) {
-    if (number >= kFrom2001 * scale && number <= kTo2100 * scale) return unit;
+  for (const char* const unit : {"s", "ms", "us", "ns"}) {
+    const double seconds = FindUnit(unit)->ToSi(number);
+    if (seconds >= kFrom2001 && seconds <= kTo2100) return unit;
   }
   return "";
 }
@@ -101,7 +101,7 @@ void ReadSum(std::string_view rest, const CsvTable& table, const std::string& wh
       const char* const stop = std::from_chars(rest.data(), rest.data() + rest.size(), number).ptr;
       auto size = static_cast<std::size_t>(stop - rest.data());
       const std::string_view behind = Trimmed(rest.substr(size)).substr(0, 1);
-      if (size > 0 && (behind.empty() || kOperators.find(behind) != behind.npos)) {
+      if (size > 0 && kOperators.find(behind) != behind.npos) {
         factor *= number;
         sum.is_scaled = true;
       } else {
