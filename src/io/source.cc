@@ -76,10 +76,6 @@ std::shared_ptr<gzFile_s> OpenedForReading(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::string NameOfInput(const std::filesystem::path& path) {
-  return path == kStandardInput ? "standard input" : path.string();
-}
-
 std::string ForMessage(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   std::size_t size = std::min(text.size(), kLongest);
@@ -92,7 +88,9 @@ std::string ForMessage(std::string_view text) {
 }
 
 LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
-    : name_(NameOfInput(path)), encoding_(std::move(encoding)), file_(OpenedForReading(path)) {
+    : name_(path == kStandardInput ? "standard input" : path.string()),
+      encoding_(std::move(encoding)),
+      file_(OpenedForReading(path)) {
   if (!file_) Refuse("cannot read '{}': {}", name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
   piece_ = std::make_unique_for_overwrite<char[]>(kPiece);  // of a short file most is not touched

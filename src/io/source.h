@@ -13,9 +13,6 @@ struct gzFile_s;  // NOLINT(readability-identifier-naming): zlib's
 
 namespace mindahl::io {
 
-/// Returns what messages call the file; "-" is standard input.
-std::string NameOfInput(const std::filesystem::path& path);
-
 /// Returns a text from a file as a message shows it: on one line, cut off after 60 bytes or so.
 std::string ForMessage(std::string_view text);
 
@@ -37,6 +34,8 @@ class LinePieces {
   ///   or has a line of more than 16 MiB
   std::string_view Next();
 
+  /// Returns what messages call the file.
+  [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns what was assumed of the encoding, a sentence; "" where nothing was.
   [[nodiscard]] const std::string& note() const { return note_; }
 
