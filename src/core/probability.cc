@@ -16,11 +16,6 @@ using ChiSquared = boost::math::chi_squared_distribution<double, InDouble>;
 using FisherF = boost::math::fisher_f_distribution<double, InDouble>;
 using StudentsT = boost::math::students_t_distribution<double, InDouble>;
 
-template <typename Distribution>
-double Above(const Distribution& distribution, double x) {
-  return boost::math::cdf(boost::math::complement(distribution, x));
-}
-
 }  // namespace
 
 double NormalQuantile(double confidence) {
@@ -28,19 +23,19 @@ double NormalQuantile(double confidence) {
 }
 
 double StudentQuantile(double degrees_of_freedom, double confidence) {
-  return boost::math::quantile(StudentsT(degrees_of_freedom), (1 + confidence) / 2);
+  return quantile(StudentsT(degrees_of_freedom), (1 + confidence) / 2);
 }
 
 double PValueOfT(double t, double degrees_of_freedom) {
-  return 2 * Above(StudentsT(degrees_of_freedom), std::abs(t));
+  return 2 * cdf(complement(StudentsT(degrees_of_freedom), std::abs(t)));
 }
 
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) {
-  return Above(FisherF(numerator_degrees, degrees_of_freedom), f);
+  return cdf(complement(FisherF(numerator_degrees, degrees_of_freedom), f));
 }
 
 double PValueOfChiSquared(double x, double degrees_of_freedom) {
-  return Above(ChiSquared(degrees_of_freedom), x);
+  return cdf(complement(ChiSquared(degrees_of_freedom), x));
 }
 
 }  // namespace mindahl
