@@ -227,9 +227,7 @@ RecordFile RecordIn(const CsvTable& table, const RecordColumns& asked) {
 
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& asked) {
   CsvTable table = ReadCsvTable(path, asked.encoding);
-  if (!asked.with.empty()) {
-    AddColumnsOf(table, ReadCsvTable(asked.with, asked.encoding));
-  }
+  if (!asked.with.empty()) AddColumnsOf(table, ReadCsvTable(asked.with, asked.encoding));
   RecordFile file = RecordIn(table, asked);
   file.name = path.string();
   return file;
