@@ -272,10 +272,10 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
     Row row{.text = TakeLine(rest), .line = ++line};
     row.is_comment = IsBlankOrComment(row.text);
-    const bool has_comment = !sampled.empty() && sampled.front().is_comment;
+    const bool is_above = sampled.empty() || sampled.back().is_comment;
     if (!row.is_comment) {
       sampled.push_back(std::move(row));
-    } else if (sampled.size() == (has_comment ? 1 : 0) && !Trimmed(row.text).empty()) {
+    } else if (is_above && !Trimmed(row.text).empty()) {
       row.text.remove_prefix(row.text.find('#') + 1);
       sampled.assign(1, row);
     }
@@ -307,19 +307,18 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
 
 std::optional<std::size_t> CsvTable::Best(Role role, bool may_tie,
                                           const std::function<int(std::size_t)>& score) const {
-  std::optional<std::size_t> best, rival;
+  std::size_t best = 0, last = 0;  // the first and the last with the greatest
   int most = 0;
   for (std::size_t column = 0; column < columns.size(); ++column) {
     const int found = score(column);
-    if (found == most) rival = column;
-    if (found <= most) continue;
-    best = column;
-    rival.reset();
-    most = found;
+    if (found > most) best = column;
+    if (found >= most) last = column;
+    most = std::max(most, found);
   }
-  if (!best || !rival || may_tie) return best;
+  if (most == 0) return std::nullopt;
+  if (best == last || may_tie) return best;
   Refuse("{}: {} and {} may each be the {}: choose one by its number, as {} {}", Header(),
-         Label(*best), Label(*rival), RulesOf(role).name, RulesOf(role).option, *best + 1);
+         Label(best), Label(last), RulesOf(role).name, RulesOf(role).option, best + 1);
 }
 
 std::optional<std::size_t> CsvTable::Named(std::string_view name, Role role) const {
