@@ -30,16 +30,14 @@ std::string CsvText(const std::vector<CsvColumn>& columns) {
     text += CsvCell(column.name);
   }
   text += '\n';
-  auto out = std::back_inserter(text);
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t index = 0; index < columns.size(); ++index) {
-      const CsvColumn& column = columns[index];
+    for (const CsvColumn& column : columns) {
       const double value = column.values[row];
       if (std::isinf(value)) {
         ThrowInvalid(fmt::format("{} of row {}", column.name, row + 1), value, "must be finite");
       }
-      if (index > 0) text += ',';
-      if (!std::isnan(value)) fmt::format_to(out, "{:.17g}", value);
+      if (&column != columns.data()) text += ',';
+      if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.17g}", value);
     }
     text += '\n';
   }

@@ -151,8 +151,7 @@ std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
 /// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
 /// one before.
 std::string Points(const Values& x, const Values& y, std::string_view shape) {
-  std::string path;
-  std::string last;
+  std::string path, last;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const std::string at = fmt::format("{:.4g} {:.4g}", x[k], y[k]);
     if (at == last) continue;
@@ -265,8 +264,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   constexpr int kColours = 6;               // classes s0 … s5
   constexpr double kLastShade = 7;          // classes h0 … h7
   if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
-  Values all_x;
-  Values all_y;
+  Values all_x, all_y;
   for (const PlotSeries& series : panel.series) {
     Append(series, 'x', series.x, panel.log_x, all_x);
     Append(series, 'y', series.y, panel.log_y, all_y);
@@ -293,8 +291,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
         series.shade
             ? fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade))
             : fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : "");
-    Values x;
-    Values y;
+    Values x, y;
     const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
     for (const std::size_t point : Thinned(series, most)) {
       x.push_back(x_axis.Pixel(series.x[point]));
