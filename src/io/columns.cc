@@ -223,7 +223,8 @@ void ObserveValues(Column& column) {
   constexpr double kGoodPart = 0.4;
   double least = std::numeric_limits<double>::infinity();
   double greatest = -least;
-  double rise = 0.0, fall = 0.0;
+  double rise = 0.0;
+  double fall = 0.0;
   std::size_t numbers = 0;
   for (const double value : column.values) {
     if (!std::isfinite(value)) continue;
