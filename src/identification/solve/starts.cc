@@ -1,6 +1,5 @@
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -34,25 +33,6 @@ const std::vector<StartRow>& RowsOf(bool is_forced) {
       {1.0, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
       {2.5, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
   return is_forced ? mobilised : rows;
-}
-
-/// A term with which a loop looks like one of another shape: the best look of each shape is tried
-/// with it.
-struct TermOfLook {
-  TermId id;
-  std::vector<double> trials;  // θ
-  bool is_of_bound = false;    // times the bound on that side
-  double stiffest = 1.0;       // what a gap takes of a stroke looked like compliance
-};
-
-const std::vector<TermOfLook>& TermsOfLook() {
-  static const std::vector<TermOfLook> terms = {
-      {.id = TermId::kLag,
-       .trials = {-0.06, -0.15, -0.3, -0.6, -1.0, 0.06, 0.15, 0.3, 0.6, 1.0},
-       .is_of_bound = true},
-      {.id = TermId::kAsymmetry, .trials = {-0.6, -0.3, 0.3, 0.6}},
-      {.id = TermId::kBacklash, .trials = {0.02, 0.05, 0.1, 0.2, 0.4}, .stiffest = 8.0}};
-  return terms;
 }
 
 /// A point of the plane, its cost and θ there.
@@ -118,21 +98,15 @@ class Plane {
     return best;
   }
 
-  /// Tries a look with the terms that make it look like one of another shape.
-  void LookForTerms(Look& best) {
-    for (const TermOfLook& term : TermsOfLook()) {
-      const Parameter& parameter = problem_.parameters[RowOf(term.id)];
-      const Look without = best;
-      for (std::size_t i = 0; !parameter.fixed && i < term.trials.size(); ++i) {
-        const double bound = term.trials[i] < 0 ? -parameter.lower : parameter.upper;
-        const double trial = term.trials[i] * (term.is_of_bound ? bound : 1.0);
-        for (double stiffer = 1.0; stiffer <= term.stiffest; stiffer *= 2) {
-          Look look = without;
-          look.theta[RowOf(term.id)] = std::clamp(trial, parameter.lower, parameter.upper);
-          look.reach *= stiffer;
-          KeepBetter(best, std::move(look));
-        }
-      }
+  /// Tries a look with lags, with which a loop looks like one of another shape.
+  void LookForLag(Look& best) {
+    const Parameter& lag = problem_.parameters[RowOf(TermId::kLag)];
+    const Look without = best;
+    for (const double share : {-1.0, -0.6, -0.3, -0.15, -0.06, 0.06, 0.15, 0.3, 0.6, 1.0}) {
+      if (lag.fixed) return;
+      Look look = without;
+      look.theta[RowOf(TermId::kLag)] = share * (share < 0 ? -lag.lower : lag.upper);
+      KeepBetter(best, std::move(look));
     }
   }
 
@@ -254,7 +228,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   solver.Bind(thin);
   Plane plane(thin, solver);
   std::vector<Look> looks = plane.Best();
-  for (Look& look : looks) plane.LookForTerms(look);
+  for (Look& look : looks) plane.LookForLag(look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
