@@ -126,7 +126,7 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{results, err, kDone, CommandLine(argc, argv)};
+  Console console{.out = results, .err = err, .command_line = CommandLine(argc, argv)};
   const std::string_view first = argc > 1 ? argv[1] : "";
   for (const auto& [name, add] : kCommands) {
     // The options of the commands that do not run take a seventh of the time of a short fit.

@@ -11,10 +11,11 @@ class App;
 
 namespace mindahl::cli {
 
-/// Holds the streams that every command writes to, and its exit status.
+/// Holds what every command writes to, and its exit status.
 struct Console {
-  std::ostream& out;  // results
-  std::ostream& err;  // messages and progress
+  std::ostream& out;           // results
+  std::ostream& err;           // messages and progress
+  std::string json_path = {};  // of the answer as JSON: "" none, "-" standard output
   int exit_status = 0;
   std::string command_line = {};  // as a shell takes it
 };

@@ -18,7 +18,6 @@ struct BatchCommandOptions {
   Strictness strict = Strictness::kNone;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
-  std::string json_path;
   std::string report_directory;
 };
 
@@ -51,39 +50,38 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
   if (!directory.empty()) {
     io::WriteFileAtomically(directory / "index.html", answer.index);
   }
-  WriteAnswer(options.json_path, console, answer.json, answer.text);
+  WriteAnswer(console, answer.json, answer.text);
   console.exit_status = std::ranges::all_of(fits, &BatchEntry::done) ? kDone : kNotEstablished;
 }
 
 }  // namespace
 
 void AddBatchCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<BatchCommandOptions>();
-  CLI::App& command = AddCommand(
-      app, "batch",
+  const auto [command, options] = AddCommand(
+      app, console, "batch",
       "Fits each file on its own, with any option of fit for all of them:\n"
       "one row a file, and the scatter between files next to their stated\n"
       "errors. A file that fails does not stop the others: exit status 3\n"
       "when any did.",
       {"mindahl batch run1.csv run2.csv run3.csv --output table.csv --normal-load 50",
-       "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
+       "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"},
+      &RunBatch);
   OptionGroup(command, kPlainGroup)
-      .Add("files", options->request.files, "CSV records, each a test of its own", "FILE")
+      .Add("files", options.request.files, "CSV records, each a test of its own", "FILE")
       ->required();
-  AddFitOptions(command, options->request);
+  AddFitOptions(command, options.request);
   const OptionGroup group(command, "Results");
-  group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
+  group.Add("--output", options.output, "table as CSV, one row a file, in SI units", "PATH")
       ->required();
-  group.AddJson(options->json_path);
+  group.AddJson(console);
   group.Add(
-      "--report", options->report_directory,
+      "--report", options.report_directory,
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
       "DIR");
-  AddThreads(group, options->threads, "the results");
-  AddStrict(command, options->strict, "a file fails too");
+  AddThreads(group, options.threads, "the results");
+  AddStrict(command, options.strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
-  OnRun(command, [options, &console] { RunBatch(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -38,11 +38,26 @@ using request::Strictness;
 
 // --- adding commands and options
 
-/// Adds a command to the program.
+/// Adds a command to the program, which runs once it refused what could not be written after the
+/// work: a run with several outputs leaves none behind, takes none for another and none for what it
+/// reads. An option whose value is called PATH or DIR writes there, "-" to standard output; one
+/// called FILE is read.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
 ///                  continues the last begins with blanks
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
-                     std::initializer_list<std::string_view> examples);
+                     std::initializer_list<std::string_view> examples, std::function<void()> run);
+/// Adds one that runs with options.
+/// @returns the command, and the options, which live as long
+template <typename Options>
+std::pair<CLI::App&, Options&> AddCommand(CLI::App& program, Console& console,
+                                          const std::string& name, const std::string& about,
+                                          std::initializer_list<std::string_view> examples,
+                                          void (*run)(const Options&, Console&)) {
+  const auto options = std::make_shared<Options>();
+  return {AddCommand(program, name, about, examples,
+                     [options, run, &console] { run(*options, console); }),
+          *options};
+}
 
 /// Lets the help of a command show these options alone, and `--help-all` all of them.
 /// @param names  with their dashes, in the order of the help
@@ -121,8 +136,8 @@ class OptionGroup {
     return Grouped(command_.add_flag(option, value, help)->check(is_one), "");
   }
   /// Adds --json, where the answer goes for scripts.
-  CLI::Option* AddJson(std::string& path) const {
-    return Add("--json", path, "answer as JSON; - for standard output alone", "PATH");
+  CLI::Option* AddJson(Console& console) const {
+    return Add("--json", console.json_path, "answer as JSON; - for standard output alone", "PATH");
   }
 
  private:
@@ -181,13 +196,10 @@ void Say(std::string_view what, const std::vector<std::string>& sentences, Conso
 
 /// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
 /// JSON goes there.
-void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
-                 std::string_view text);
+void WriteAnswer(Console& console, std::string_view json, std::string_view text);
 
-/// Lets a command run, once it refused what could not be written after the work: a run with several
-/// outputs leaves none behind, takes none for another and none for what it reads. An option whose
-/// value is called PATH or DIR writes there, "-" to standard output; one called FILE is read.
-void OnRun(CLI::App& command, std::function<void()> run);
+/// Refuses outputs of a command that could not be written, as AddCommand() says.
+void RequireOutputs(const CLI::App& command);
 
 /// Refuses a file that is given twice, by one name or by two: its samples would count twice.
 /// @throws InputError naming both

@@ -4,11 +4,6 @@ namespace mindahl::cli {
 
 namespace {
 
-struct ContactCommandOptions {
-  ContactOptions contact;
-  std::string json_path;
-};
-
 /// Adds a quantity that there is, with what it is for the text.
 void Add(Json& rows, const char* name, const std::optional<contact::UncertainValue>& value,
          const char* unit, const char* meaning) {
@@ -19,8 +14,7 @@ void Add(Json& rows, const char* name, const std::optional<contact::UncertainVal
                 {"meaning", meaning}};
 }
 
-void RunContact(const ContactCommandOptions& options, Console& console) {
-  const ContactOptions& given = options.contact;
+void RunContact(const ContactOptions& given, Console& console) {
   Validate(given);
   const contact::PredictedContact made = ResolveContact(given);
   Json quantities = Json::object();
@@ -44,7 +38,7 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   rows.update(parameters);
   constexpr int kEveryDigit = 17;
   // G* is said wherever it is used: many texts write it for the inverse.
-  WriteAnswer(options.json_path, console,
+  WriteAnswer(console,
               report::Document("mindahl.contact/1",
                                {{"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
                                 {"compliance_unit", "1/Pa"},
@@ -56,19 +50,18 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
 }  // namespace
 
 void AddContactCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<ContactCommandOptions>();
-  CLI::App& command = AddCommand(
-      app, "contact",
+  const auto [command, options] = AddCommand(
+      app, console, "contact",
       "Computes sigma = 8a/G*, alpha = 1/3 and Tc = mu N of a contact from\n"
       "materials, radii, load and friction, or from contact radius and\n"
       "compliance, by Hertz and Mindlin.",
       {"mindahl contact --friction 0.3 --normal-load 50±0.5 --radius-1 0.05 --radius-2 inf \\",
        "    --youngs-modulus-1 210e9 --poisson-1 0.3 --youngs-modulus-2 210e9 --poisson-2 0.3",
        "mindahl contact --friction 0.3 --normal-load 50 --contact-radius 2.5e-4 --compliance "
-       "4.2e-11"});
-  AddContactOptions(command, options->contact, /*has_friction=*/true);
-  OptionGroup(command, kPlainGroup).AddJson(options->json_path);
-  OnRun(command, [options, &console] { RunContact(*options, console); });
+       "4.2e-11"},
+      &RunContact);
+  AddContactOptions(command, options, /*has_friction=*/true);
+  OptionGroup(command, kPlainGroup).AddJson(console);
 }
 
 }  // namespace mindahl::cli

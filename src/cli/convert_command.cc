@@ -23,7 +23,6 @@ struct ConvertOptions {
   std::string from;                 // "masing", "dahl" or "": that of the fit, else masing
   std::string to;
   convert::ConversionOptions options = {};
-  std::string json_path;
   std::string input_lines_path;
 };
 
@@ -79,7 +78,8 @@ std::string Percent(double error) {
   return std::abs(error) < kRounding ? "0 %" : fmt::format("{:.3g} %", 100 * error);
 }
 
-void RunConvert(ConvertOptions request, Console& console) {
+void RunConvert(const ConvertOptions& given, Console& console) {
+  ConvertOptions request = given;
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   std::vector<std::string> left_out;  // terms of the fit that no target has
   if (!request.fit.empty()) {
@@ -151,50 +151,49 @@ void RunConvert(ConvertOptions request, Console& console) {
                           fmt::join(made.input_lines, "\n")),
               lines_path, console);
   }
-  WriteAnswer(request.json_path, console, json, lines_path == "-" ? "" : text);
+  WriteAnswer(console, json, lines_path == "-" ? "" : text);
 }
 
 }  // namespace
 
 void AddConvertCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<ConvertOptions>();
-  CLI::App& command = AddCommand(
-      app, "convert",
+  const auto [command, options] = AddCommand(
+      app, console, "convert",
       "Converts a contact's steady loop to another law or program: the\n"
       "parameters, the remaining error, and the amplitudes at which it is\n"
       "small.",
       {"mindahl convert fit.json --to dahl",
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
-       "    --input-lines contact.tcl"});
+       "    --input-lines contact.tcl"},
+      &RunConvert);
   const OptionGroup contact(command, "The contact");
-  contact.Add("fit", options->fit,
+  contact.Add("fit", options.fit,
               "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
-  AddLawParameters(contact, options->law);
+  AddLawParameters(contact, options.law);
   contact.AddWord(
-      "--from", options->from, {"masing", "dahl"},
+      "--from", options.from, {"masing", "dahl"},
       "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
       "fit's, else masing");
-  contact.AddQuantity("--amplitude", options->amplitude,
+  contact.AddQuantity("--amplitude", options.amplitude,
                       "amplitude X of the contact's steady loop [m], without the rig's travel", "M",
                       "m");
   const OptionGroup result(command, "What it becomes");
   result
-      .AddWord("--to", options->to, NamesOf(convert::Targets(), &TargetRow::name), "law or program")
+      .AddWord("--to", options.to, NamesOf(convert::Targets(), &TargetRow::name), "law or program")
       ->required();
   result
-      .AddQuantity("--tolerance", options->options.tolerance,
+      .AddQuantity("--tolerance", options.options.tolerance,
                    "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
                    "E", "-")
       ->capture_default_str();
-  result.AddCount("--elements", options->options.elements, "number of elements of --to iwan", 1,
+  result.AddCount("--elements", options.options.elements, "number of elements of --to iwan", 1,
                   10'000);
-  result.AddQuantity("--normal-load", options->options.normal_load,
+  result.AddQuantity("--normal-load", options.options.normal_load,
                      "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
   const OptionGroup outputs(command, "Output");
-  outputs.Add("--input-lines", options->input_lines_path,
+  outputs.Add("--input-lines", options.input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
-  outputs.AddJson(options->json_path);
-  OnRun(command, [options, &console] { RunConvert(*options, console); });
+  outputs.AddJson(console);
 }
 
 }  // namespace mindahl::cli

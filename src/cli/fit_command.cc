@@ -8,7 +8,6 @@ namespace {
 struct FitCommandOptions {
   FitRequest request;
   Strictness strict = Strictness::kNone;
-  std::string json_path;
   std::string residuals_path;
   std::string plot_path;
   std::string report_path;
@@ -34,46 +33,40 @@ void RunFit(const FitCommandOptions& options, Console& console) {
   if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
-  if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-  if (failed) return;
-  if (options.json_path == "-") {
-    Say("fit: note", report.notes, console);
-  } else {
-    console.out << report::ToText(
-        report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
-  }
+  if (!failed && console.json_path == "-") Say("fit: note", report.notes, console);
+  const auto detail = options.has_details ? report::Detail::kAll : report::Detail::kAnswer;
+  WriteAnswer(console, report::ToJson(report), failed ? "" : report::ToText(report, detail));
 }
 
 }  // namespace
 
 void AddFitCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<FitCommandOptions>();
   constexpr const char* kAbout =
       "Fits sigma, alpha and Tc to one or more records of a contact (several\n"
       "files: one joint fit) and translates them into the contact. Exit\n"
       "status 3 when the fit does not converge or, with --strict, the model\n"
       "is not adequate or a parameter not identifiable.";
-  CLI::App& command =
-      AddCommand(app, "fit", kAbout,
+  const auto [command, options] =
+      AddCommand(app, console, "fit", kAbout,
                  {"mindahl fit loop.csv --normal-load 50",
                   "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
-                  "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"});
+                  "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"},
+                 &RunFit);
   OptionGroup(command, kPlainGroup)
-      .Add("files", options->request.files, "CSV records of one contact", "FILE")
+      .Add("files", options.request.files, "CSV records of one contact", "FILE")
       ->required();
-  AddFitOptions(command, options->request);
+  AddFitOptions(command, options.request);
   const OptionGroup group(command, "Results");
-  group.AddFlag("--details", options->has_details, "print what the answer leaves out");
-  group.AddJson(options->json_path);
-  group.Add("--residuals", options->residuals_path,
+  group.AddFlag("--details", options.has_details, "print what the answer leaves out");
+  group.AddJson(console);
+  group.Add("--residuals", options.residuals_path,
             "measured and fitted force of every sample as CSV", "PATH");
-  group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
-  group.Add("--report", options->report_path,
+  group.Add("--plot", options.plot_path, "loop and residuals as svg or png", "PATH");
+  group.Add("--report", options.report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
-  AddStrict(command, options->strict, "exit status 3");
+  AddStrict(command, options.strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
-  OnRun(command, [options, &console] { RunFit(*options, console); });
 }
 
 }  // namespace mindahl::cli

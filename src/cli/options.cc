@@ -8,11 +8,15 @@
 namespace mindahl::cli {
 
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
-                     std::initializer_list<std::string_view> examples) {
+                     std::initializer_list<std::string_view> examples, std::function<void()> run) {
   CLI::App* command = program.add_subcommand(name, about);
   command->footer(
       fmt::format("Examples:\n  {}\n\n{}", fmt::join(examples, "\n  "), program.get_footer()));
   command->set_help_all_flag("--help-all", "Print all options and exit");
+  command->callback([command, run = std::move(run)] {
+    RequireOutputs(*command);
+    run();
+  });
   return *command;
 }
 

@@ -17,10 +17,9 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
   }
 }
 
-void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
-                 std::string_view text) {
-  if (!json_path.empty()) WriteText(json, json_path, console);
-  if (json_path != "-") console.out << text;
+void WriteAnswer(Console& console, std::string_view json, std::string_view text) {
+  if (!console.json_path.empty()) WriteText(json, console.json_path, console);
+  if (console.json_path != "-") console.out << text;
 }
 
 void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console) {
@@ -63,6 +62,8 @@ std::vector<std::string> InputsOf(const CLI::App& command) {
   return inputs;
 }
 
+}  // namespace
+
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
   std::vector<std::string> outputs;
@@ -84,15 +85,6 @@ void RequireOutputs(const CLI::App& command) {
     }
     outputs.push_back(path);
   }
-}
-
-}  // namespace
-
-void OnRun(CLI::App& command, std::function<void()> run) {
-  command.callback([&command, run = std::move(run)] {
-    RequireOutputs(command);
-    run();
-  });
 }
 
 void RequireDistinctFiles(std::span<const std::string> files) {

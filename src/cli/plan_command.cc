@@ -29,7 +29,6 @@ struct PlanOptions {
   std::vector<double> amplitudes;
   Protocol protocol;
   std::vector<std::string> want;
-  std::string json;
   std::string plot;
 };
 
@@ -228,7 +227,7 @@ io::Plot ToPlot(const Plan& plan) {
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
-  WriteAnswer(options.json, console, ToJson(plan), ToText(options, plan));
+  WriteAnswer(console, ToJson(plan), ToText(options, plan));
   const bool fails = !plan.wanted.empty() && plan.reached["least_amplitude"].is_null();
   if (fails) console.exit_status = kNotEstablished;
 }
@@ -236,42 +235,40 @@ void RunPlan(const PlanOptions& options, Console& console) {
 }  // namespace
 
 void AddPlanCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<PlanOptions>();
-  CLI::App& command = AddCommand(
-      app, "plan",
+  const auto [command, options] = AddCommand(
+      app, console, "plan",
       "Plans a measurement: the standard errors that a loop of each\n"
       "amplitude would give, and the smallest of these that reaches a wanted\n"
       "precision. Exit status 3 when none does.",
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
-       "mindahl plan --record loop.csv --cycles 10 --json plan.json"});
-  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
+       "mindahl plan --record loop.csv --cycles 10 --json plan.json"},
+      &RunPlan);
+  AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   const OptionGroup expected(command, "What is expected");
   CLI::Option* const record = expected.Add(
-      "--record", options->record, "take law and noise from a fit of this record instead", "FILE");
-  AddColumnOptions(command, options->columns);
+      "--record", options.record, "take law and noise from a fit of this record instead", "FILE");
+  AddColumnOptions(command, options.columns);
   for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
     command.get_option(name)->needs(record);
   }
-  expected.AddQuantity("--rig-stiffness", options->rig_stiffness,
+  expected.AddQuantity("--rig-stiffness", options.rig_stiffness,
                        "known stiffness of the rig in series [N/m], of --record too", "K", "N/m");
-  expected.AddQuantity("--force-noise", options->force_noise,
+  expected.AddQuantity("--force-noise", options.force_noise,
                        "standard deviation of the force noise [N]", "S", "N");
-  expected.AddQuantity("--displacement-noise", options->displacement_noise,
+  expected.AddQuantity("--displacement-noise", options.displacement_noise,
                        "standard deviation of the displacement noise [m], white; default 0", "S",
                        "m");
   const OptionGroup loop(command, "The loop");
-  loop.AddQuantity("--amplitude", options->amplitudes,
+  loop.AddQuantity("--amplitude", options.amplitudes,
                    "amplitude X [m], repeatable; default 13 around the onset of slip", "X", "m");
-  loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
-  loop.AddCount("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle",
+  loop.AddShown("--cycles", options.protocol.cycles, "cycles of the sine, >= 1", "M");
+  loop.AddCount("--samples-per-cycle", options.protocol.samples_per_cycle, "samples of each cycle",
                 4, 1'000'000);
-  loop.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%",
-           "NAME=ERROR")
+  loop.Add("--want", options.want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
       ->delimiter(',');
   const OptionGroup output(command, "Output");
-  output.AddJson(options->json);
-  output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
-  OnRun(command, [options, &console] { RunPlan(*options, console); });
+  output.AddJson(console);
+  output.Add("--plot", options.plot, "errors against the amplitude, svg or png", "PATH");
 }
 
 }  // namespace mindahl::cli

@@ -125,35 +125,34 @@ std::string MethodHelp() {
 }  // namespace
 
 void AddSimulateCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<SimulateOptions>();
-  CLI::App& command = AddCommand(
-      app, "simulate",
+  const auto [command, options] = AddCommand(
+      app, console, "simulate",
       "Computes the tangential force along an imposed displacement,\n"
       "exactly for any history. The contact is unloaded at displacement\n"
       "zero; a first row that is not zero is the first loading step.\n"
       "Writes time [s], displacement [m], force [N].",
       {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
        "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
-       "    --path path.csv --displacement \"[um]\""});
+       "    --path path.csv --displacement \"[um]\""},
+      &RunSimulate);
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddWord("--model", options->model, SimulatedModels(), "friction model");
-  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
-  AddContactOptions(command, options->law.contact, /*has_friction=*/true);
-  AddDriveOptions(command, *options);
+  plain.AddWord("--model", options.model, SimulatedModels(), "friction model");
+  AddLawParameters(OptionGroup(command, "Parameters"), options.law);
+  AddContactOptions(command, options.law.contact, /*has_friction=*/true);
+  AddDriveOptions(command, options);
 
   const OptionGroup noise(command, "Noise");
-  noise.AddQuantity("--noise-force", options->force_noise, "standard deviation [N]", "N", "N");
-  noise.AddQuantity("--noise-displacement", options->displacement_noise, "standard deviation [m]",
+  noise.AddQuantity("--noise-force", options.force_noise, "standard deviation [N]", "N", "N");
+  noise.AddQuantity("--noise-displacement", options.displacement_noise, "standard deviation [m]",
                     "M", "m");
-  noise.AddCount("--seed", options->seed, "seed of the noise", 0);
+  noise.AddCount("--seed", options.seed, "seed of the noise", 0);
 
   const OptionGroup method(command, "Method");
-  method.AddWord("--method", options->method, NamesOf(methods::Methods(), &Method::name),
+  method.AddWord("--method", options.method, NamesOf(methods::Methods(), &Method::name),
                  MethodHelp());
-  method.AddCount("--steps", options->steps,
+  method.AddCount("--steps", options.steps,
                   "substeps a sample, elements of iwan, intervals of table");
-  plain.Add("-o,--output", options->output, "CSV file; default standard output", "PATH");
-  OnRun(command, [options, &console] { RunSimulate(*options, console); });
+  plain.Add("-o,--output", options.output, "CSV file; default standard output", "PATH");
 }
 
 }  // namespace mindahl::cli

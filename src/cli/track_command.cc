@@ -29,7 +29,6 @@ struct TrackCommandOptions {
   FitRequest fit;  // model of each cycle, and what is known of the contact
   campaign::TrackOptions track{.threads = std::max(1U, std::thread::hardware_concurrency())};
   std::string output;
-  std::string json_path;
   std::string report_path;
   bool resume = false;
   bool overwrite = false;
@@ -353,48 +352,47 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
     io::WriteFileAtomically(options.report_path, ToPage(test, console.command_line));
   }
   const Json quantities = QuantityRows(test);
-  WriteAnswer(options.json_path, console, ToJson(test, quantities), ToText(test, quantities));
+  WriteAnswer(console, ToJson(test, quantities), ToText(test, quantities));
 }
 
 }  // namespace
 
 void AddTrackCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<TrackCommandOptions>();
-  CLI::App& command =
-      AddCommand(app, "track",
+  const auto [command, options] =
+      AddCommand(app, console, "track",
                  "Fits every cycle of a long record while reading it, in constant\n"
                  "memory: one row a cycle, and the changes over the test. --resume\n"
                  "continues a run that was ended. Exit status 3 when no fit converged.",
                  {"mindahl track day1.csv --output cycles.csv",
                   "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
-                  "track.json"});
+                  "track.json"},
+                 &RunTrack);
   OptionGroup(command, kPlainGroup)
-      .Add("files", options->fit.files,
+      .Add("files", options.fit.files,
            "CSV records of one test, in order; no cycle extends over two files", "FILE")
       ->required();
-  AddColumnOptions(command, options->fit.columns);
-  AddModelOptions(command, options->fit);
+  AddColumnOptions(command, options.fit.columns);
+  AddModelOptions(command, options.fit);
   for (const char* refused : {"--compare", "--covariate", "--noise-in"}) {
     command.get_option(refused)->group("");
   }
-  AddContactOptions(command, options->fit.contact);
+  AddContactOptions(command, options.fit.contact);
   const OptionGroup cycles(command, "Cycles");
-  cycles.AddCount("--average", options->track.together,
+  cycles.AddCount("--average", options.track.together,
                   "number of consecutive cycles that are fitted together", 1, 1'000'000);
-  cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
+  cycles.AddChoice("--broken-rows", options.fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "rows without a number in a needed column; skip counts them");
-  AddThreads(cycles, options->track.threads, "the table");
+  AddThreads(cycles, options.track.threads, "the table");
   const OptionGroup group(command, "Results");
-  group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
+  group.Add("--output", options.output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();
-  group.AddJson(options->json_path);
-  group.Add("--report", options->report_path,
+  group.AddJson(console);
+  group.Add("--report", options.report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
   CLI::Option* const resume = group.AddFlag(
-      "--resume", options->resume, "continue an existing table, with the same files and options");
-  group.AddFlag("--overwrite", options->overwrite, "replace an existing table")->excludes(resume);
-  OnRun(command, [options, &console] { RunTrack(*options, console); });
+      "--resume", options.resume, "continue an existing table, with the same files and options");
+  group.AddFlag("--overwrite", options.overwrite, "replace an existing table")->excludes(resume);
 }
 
 }  // namespace mindahl::cli

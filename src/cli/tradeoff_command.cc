@@ -21,7 +21,6 @@ struct TradeoffOptions {
   std::string column;
   std::string csv;
   std::string plot;
-  std::string json;
   double tolerance = 0.01;
 };
 
@@ -142,7 +141,7 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(excitations), options.plot);
   if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(excitations));
-  WriteAnswer(options.json, console,
+  WriteAnswer(console,
               report::Document("mindahl.tradeoff/1", {{"law", report::LawJson(law)},
                                                       {"tolerance", options.tolerance},
                                                       {"excitations", excitations}}),
@@ -152,29 +151,28 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
 }  // namespace
 
 void AddTradeoffCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<TradeoffOptions>();
-  CLI::App& command =
-      AddCommand(app, "tradeoff",
+  const auto [command, options] =
+      AddCommand(app, console, "tradeoff",
                  "Compares error and cost of every model and method along an excitation,\n"
                  "and names the cheapest whose force and dissipated energy are within a\n"
                  "tolerance of the exact ones. By default the contact and three\n"
                  "excitations are those of Peyret et al. (2017).",
                  {"mindahl tradeoff --path path.csv --displacement \"[um]\" --sigma 4e7 "
                   "--slip-force 40 --tolerance 1%",
-                  "mindahl tradeoff --csv points.csv"});
-  AddLawParameters(OptionGroup(command, "Parameters"), options->law);
+                  "mindahl tradeoff --csv points.csv"},
+                 &RunTradeoff);
+  AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   const OptionGroup group(command, "Excitation");
-  AddPath(group, options->path, options->column);
+  AddPath(group, options.path, options.column);
   group
-      .AddQuantity("--tolerance", options->tolerance,
+      .AddQuantity("--tolerance", options.tolerance,
                    "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E",
                    "-")
       ->capture_default_str();
   const OptionGroup output(command, "Output");
-  output.Add("--csv", options->csv, "every point, as CSV", "PATH");
-  output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
-  output.AddJson(options->json);
-  OnRun(command, [options, &console] { RunTradeoff(*options, console); });
+  output.Add("--csv", options.csv, "every point, as CSV", "PATH");
+  output.Add("--plot", options.plot, "work-precision diagrams, svg or png", "PATH");
+  output.AddJson(console);
 }
 
 }  // namespace mindahl::cli

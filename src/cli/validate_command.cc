@@ -3,15 +3,10 @@
 
 namespace mindahl::cli {
 
-using identification::ValidationReport;
+using identification::ValidationOptions;
 using identification::ValidationRow;
 
 namespace {
-
-struct Validation {
-  identification::ValidationOptions options;
-  std::string json_path;
-};
 
 Json RowsOf(const std::vector<ValidationRow>& rows) {
   return report::ListOf(rows, [](const ValidationRow& row) {
@@ -36,16 +31,16 @@ Json RowsOf(const std::vector<ValidationRow>& rows) {
   });
 }
 
-void RunValidate(const Validation& validation, Console& console) {
-  const ValidationReport report = identification::ValidateMapping(validation.options);
+void RunValidate(const ValidationOptions& options, Console& console) {
+  const identification::ValidationReport report = identification::ValidateMapping(options);
   const Json rows = RowsOf(report.rows);
-  const std::size_t fits = validation.options.cases * identification::kNoiseLevels.size();
+  const std::size_t fits = options.cases * identification::kNoiseLevels.size();
   const std::size_t failures = report.failed_cases.size();
   const bool passed = failures == 0;
   WriteAnswer(
-      validation.json_path, console,
-      report::Document("mindahl.validate/1", {{"cases", validation.options.cases},
-                                              {"seed", validation.options.seed},
+      console,
+      report::Document("mindahl.validate/1", {{"cases", options.cases},
+                                              {"seed", options.seed},
                                               {"fits", fits},
                                               {"failures", failures},
                                               {"passed", passed},
@@ -53,7 +48,7 @@ void RunValidate(const Validation& validation, Console& console) {
                                               {"failed_cases", report.failed_cases}}),
       fmt::format("Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits;\n"
                   "largest errors of sigma/(8a/G*), alpha - 1/3 and Tc/(mu N)\n\n{}\n{}\n",
-                  validation.options.cases, validation.options.seed, fits, report::TableText(rows),
+                  options.cases, options.seed, fits, report::TableText(rows),
                   passed ? "passed: every case within its tolerance"
                          : fmt::format("FAILED: {} of {} fits", failures, fits)));
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
@@ -63,18 +58,17 @@ void RunValidate(const Validation& validation, Console& console) {
 }  // namespace
 
 void AddValidateCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<Validation>();
-  CLI::App& command = AddCommand(
-      app, "validate",
+  const auto [command, options] = AddCommand(
+      app, console, "validate",
       "Tests the mapping: fits Mindlin loops of many contacts at many\n"
       "amplitudes and noise levels, and compares sigma with 8a/G*, alpha with\n"
       "1/3 and Tc with mu N. Exit status 3 when a case misses its tolerance.",
-      {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
+      {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"},
+      &RunValidate);
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddCount("--cases", options->options.cases, "contacts to draw");
-  plain.AddCount("--seed", options->options.seed, "seed of the random numbers", 0);
-  plain.AddJson(options->json_path);
-  OnRun(command, [options, &console] { RunValidate(*options, console); });
+  plain.AddCount("--cases", options.cases, "contacts to draw");
+  plain.AddCount("--seed", options.seed, "seed of the random numbers", 0);
+  plain.AddJson(console);
 }
 
 }  // namespace mindahl::cli
