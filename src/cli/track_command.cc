@@ -1,6 +1,5 @@
 #include <fmt/ranges.h>
 
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -14,7 +13,6 @@
 #include "mindahl/core/interruption.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/report/units.h"
 #include "report/html.h"
 
@@ -91,7 +89,7 @@ Json QuantityRows(const TrackedTest& test) {
   return quantities;
 }
 
-std::string ToJson(const TrackedTest& test, const Json& quantities) {
+std::string ToJson(const TrackedTest& test) {
   return report::Document(
       "mindahl.track/1", {{"input",
                            {{"files", test.files},
@@ -106,7 +104,7 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
                           {"accumulated_energy", test.energy},
                           {"headline", campaign::Headline(test.evolutions)},
                           {"changes", campaign::ChangeStatements(test.evolutions)},
-                          {"quantities", quantities},
+                          {"quantities", QuantityRows(test)},
                           {"notes", test.notes}});
 }
 
@@ -135,11 +133,11 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   return facts;
 }
 
-std::string ToText(const TrackedTest& test, const Json& quantities) {
+std::string ToText(const TrackedTest& test) {
   std::string text =
       fmt::format("{}\n{}\n", campaign::Headline(test.evolutions), fmt::join(Facts(test), "\n"));
   if (!test.flags.empty()) text += '\n' + report::TableText(FlagRows(test));
-  text += '\n' + report::TableText(quantities);
+  text += '\n' + report::TableText(QuantityRows(test));
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   if (changes.empty()) return text;
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
@@ -179,40 +177,6 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
 
 // --- the run
 
-/// Holds what a resumed run keeps of the table on disk: its whole batches, if it has any.
-struct KeptCycles {
-  std::size_t fits = 0;      // of all batches but the last
-  std::uintmax_t bytes = 0;  // size of the header and of all batches
-  std::string last = {};     // rows of the last batch, which is fitted again to compare
-};
-
-/// @param visit  is given every fit of KeptCycles::fits
-/// @throws InputError where the file is no such table
-KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
-                          const std::function<void(const CycleFit&)>& visit) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string header = campaign::CycleTableHeader(is_torsional);
-  std::string line;
-  std::getline(file, line);
-  if (line + '\n' != header) Refuse("its first line is another");
-  KeptCycles kept;
-  std::string batch;
-  std::size_t rows = 0;
-  kept.bytes = header.size();
-  // A line without a line feed was being written when a run was killed, and is no row.
-  while (std::getline(file, line) && !file.eof()) {
-    batch += line + '\n';
-    if (++rows % campaign::kBatch != 0) continue;
-    for (const std::string_view row : PartsOf(kept.last, '\n')) {
-      if (!row.empty()) visit(campaign::ReadCycleTableRow(row, is_torsional));
-    }
-    kept.fits = rows - campaign::kBatch;
-    kept.bytes += batch.size();
-    kept.last = std::exchange(batch, {});
-  }
-  return kept;
-}
-
 /// Reads a test of many cycles piece by piece, fits each, and appends its row to the table.
 class TrackRun {
  public:
@@ -223,7 +187,7 @@ class TrackRun {
   TrackedTest Track() {
     for (const std::string& file : options_.fit.files) ReadFile(file);
     tracker_->Finish();
-    if (!kept_.last.empty()) RefuseTable();  // the record ends before the table
+    if (!last_batch_.empty()) RefuseTable();  // the record ends before the table
     if (output_) output_->Finish();
     test_.cycles = tracker_->cycles();
     test_.log = tracker_->log();
@@ -238,18 +202,6 @@ class TrackRun {
   }
 
  private:
-  void BeginSource(const io::RecordFile& layout) {
-    test_.files.push_back(layout.name);
-    if (test_.files.size() == 1) {
-      test_.is_torsional = layout.is_torsional;
-      test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
-    }
-    test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
-    if (layout.is_torsional == test_.is_torsional) return;
-    Refuse("{} and {} hold a force and a torque: track them apart", test_.files.front(),
-           layout.name);
-  }
-
   void BeginFits(const loop::RecordView& head, std::string_view source) {
     const contact::KnownContact& known = options_.fit.contact.known;
     campaign::TrackOptions options = options_.track;
@@ -259,7 +211,9 @@ class TrackRun {
     test_.gate = campaign::ChooseGate(head, options.fit);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
     if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-    Resume(options);
+    test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
+    Resume();
+    options.skipped = test_.fits;
     if (!test_.gate.certain) {
       test_.notes.push_back(
           fmt::format("{}: the number of reversals under a gate of {:.3g} m is not certain: set "
@@ -271,7 +225,14 @@ class TrackRun {
 
   void ReadFile(const std::string& file) {
     io::RecordStream stream(file, options_.fit.columns);
-    BeginSource(stream.layout());
+    const io::RecordFile& layout = stream.layout();
+    test_.files.push_back(layout.name);
+    if (!tracker_) test_.is_torsional = layout.is_torsional;
+    if (layout.is_torsional != test_.is_torsional) {
+      Refuse("{} and {} hold a force and a torque: track them apart", test_.files.front(),
+             layout.name);
+    }
+    test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
     io::Samples piece;
     if (tracker_) {
       stream.Next(piece);
@@ -286,24 +247,46 @@ class TrackRun {
       if (!stream.Next(piece)) break;
     }
     test_.unused_samples += tracker_->NextFile();
-    const io::LeftOutRows& left_out = stream.layout().left_out;
+    const io::LeftOutRows& left_out = layout.left_out;
     if (left_out.count == 0) return;
     if (options_.fit.columns.skip_broken_rows) test_.broken_rows += left_out.count;
     test_.notes.push_back(left_out.InWords());
   }
 
-  /// Takes over what the table has already, where that is asked for.
-  void Resume(campaign::TrackOptions& made) {
+  /// Takes over the batches that the table has already, but for the last, which is fitted again to
+  /// compare.
+  /// @throws InputError where the file is no such table
+  void TakeOverTable() {
+    std::ifstream file(options_.output, std::ios::binary);
+    const std::string header = campaign::CycleTableHeader(test_.is_torsional);
+    std::string line;
+    std::getline(file, line);
+    if (line + '\n' != header) Refuse("its first line is another");
+    kept_bytes_ = header.size();
+    std::string batch;
+    std::size_t rows = 0;
+    // A line without a line feed was being written when a run was killed, and is no row.
+    while (std::getline(file, line) && !file.eof()) {
+      batch += line + '\n';
+      if (++rows % campaign::kBatch != 0) continue;
+      for (const std::string_view row : PartsOf(last_batch_, '\n')) {
+        if (!row.empty()) test_.Add(campaign::ReadCycleTableRow(row, test_.is_torsional));
+      }
+      kept_bytes_ += batch.size();
+      last_batch_ = std::exchange(batch, {});
+    }
+  }
+
+  /// Takes over what the table has already, where that is asked for and there is one.
+  void Resume() {
     std::error_code error;
     if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error)
       return;
     try {
-      kept_ = ReadKeptCycles(options_.output, test_.is_torsional,
-                             [this](const CycleFit& fit) { test_.Add(fit); });
+      TakeOverTable();
     } catch (const InputError& fault) {
       Refuse("--resume: {} is no table of such cycles: {}", options_.output, fault.what());
     }
-    made.skipped = kept_.fits;
   }
 
   [[noreturn]] void RefuseTable() const {
@@ -320,11 +303,11 @@ class TrackRun {
       test_.Add(fit);
       rows += campaign::CycleTableRow(fit, test_.energy, test_.is_torsional);
     }
-    const bool is_kept = !kept_.last.empty();
-    if (is_kept && std::exchange(kept_.last, {}) != rows) RefuseTable();
+    const bool is_kept = !last_batch_.empty();
+    if (is_kept && std::exchange(last_batch_, {}) != rows) RefuseTable();
     if (!output_) {
-      output_.emplace(options_.output, kept_.bytes);
-      if (kept_.bytes == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+      output_.emplace(options_.output, kept_bytes_);
+      if (kept_bytes_ == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
     }
     if (!is_kept) output_->Append(rows);
   }
@@ -332,7 +315,9 @@ class TrackRun {
   const TrackCommandOptions& options_;
   TrackedTest test_;
   std::optional<campaign::Tracker> tracker_;
-  KeptCycles kept_;
+  // What a resumed run keeps of the table on disk: its whole batches, if it has any.
+  std::uintmax_t kept_bytes_ = 0;  // size of the header and of all batches
+  std::string last_batch_;         // rows of the last one
   std::optional<io::AppendedFile> output_;
 };
 
@@ -351,8 +336,7 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, ToPage(test, console.command_line));
   }
-  const Json quantities = QuantityRows(test);
-  WriteAnswer(console, ToJson(test, quantities), ToText(test, quantities));
+  WriteAnswer(console, ToJson(test), ToText(test));
 }
 
 }  // namespace
