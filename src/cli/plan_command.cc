@@ -13,7 +13,6 @@ namespace mindahl::cli {
 using identification::Expectation;
 using identification::ExpectedFit;
 using identification::ParameterEstimate;
-using identification::Precision;
 using identification::Protocol;
 using identification::WantedPrecision;
 
@@ -73,19 +72,6 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   plan.expected.displacement_noise = fit.records.front().displacement_noise;
 }
 
-void Expect(const PlanOptions& options, Plan& plan) {
-  Expectation& expected = plan.expected;
-  if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
-  if (!options.record.empty()) {
-    TakeRecord(options, plan);
-  } else {
-    expected.law = ResolveLaw(options.law);
-  }
-  if (options.force_noise) expected.force_noise = *options.force_noise;
-  if (!options.displacement_noise) return;
-  expected.displacement_noise = *options.displacement_noise;
-}
-
 WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   WantedPrecision wanted;
   for (const std::string& text : texts) {
@@ -105,8 +91,16 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 Plan MakePlan(const PlanOptions& options) {
   Plan plan;
   plan.wanted = ParseWanted(options.want);
-  Expect(options, plan);
-  plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
+  Expectation& expected = plan.expected;
+  if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
+  if (!options.record.empty()) {
+    TakeRecord(options, plan);
+  } else {
+    expected.law = ResolveLaw(options.law);
+  }
+  if (options.force_noise) expected.force_noise = *options.force_noise;
+  if (options.displacement_noise) expected.displacement_noise = *options.displacement_noise;
+  plan.slip = SlipReach(expected.law, expected.rig);
   std::vector<double> amplitudes = options.amplitudes;
   constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
   if (amplitudes.empty()) {
@@ -115,25 +109,24 @@ Plan MakePlan(const PlanOptions& options) {
   Protocol protocol = options.protocol;
   for (const double amplitude : amplitudes) {
     protocol.amplitude = amplitude;
-    plan.loops.push_back(identification::ExpectFit(plan.expected, protocol));
+    plan.loops.push_back(identification::ExpectFit(expected, protocol));
   }
   if (plan.wanted.empty()) return plan;
+  const auto factor_of = [&](const ExpectedFit& fit) {
+    return identification::CyclesFactor(fit, plan.wanted);
+  };
   std::optional<double> least;
-  double fewest = std::numeric_limits<double>::infinity();
-  double at_fewest = 0.0;
   for (const ExpectedFit& fit : plan.loops) {
     const double amplitude = fit.protocol.amplitude;
-    const double factor = identification::CyclesFactor(fit, plan.wanted);
-    if (factor <= 1) least = std::min(least.value_or(amplitude), amplitude);
-    if (factor >= fewest) continue;
-    fewest = factor;
-    at_fewest = amplitude;
+    if (factor_of(fit) <= 1) least = std::min(least.value_or(amplitude), amplitude);
   }
-  const bool any = at_fewest > 0;
-  const double cycles = std::max(1.0, std::ceil(fewest * protocol.cycles));
+  const ExpectedFit& fewest = *std::ranges::min_element(plan.loops, {}, factor_of);
+  const double factor = factor_of(fewest);
+  const bool any = std::isfinite(factor);
+  const double cycles = std::max(1.0, std::ceil(factor * protocol.cycles));
   plan.reached = {{"least_amplitude", NumberOrNull(least)},
                   {"fewest_cycles", any ? Json(cycles) : Json()},
-                  {"amplitude_of_fewest_cycles", any ? Json(at_fewest) : Json()}};
+                  {"amplitude_of_fewest_cycles", any ? Json(fewest.protocol.amplitude) : Json()}};
   return plan;
 }
 
