@@ -17,95 +17,7 @@ using identification::Term;
 
 namespace {
 
-constexpr const char* kContactGroup = "What is known of the contact";
 constexpr const char* kColumnGroup = "Columns and units";
-
-/// Adds an option for what is known exactly or with a standard uncertainty.
-void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
-              const std::string& help, const std::string& unit, const std::string& type) {
-  const auto read = [&target, name, unit](const std::string& text) {
-    target = ParseUncertainValue(text, name, unit);
-  };
-  OptionGroup(command, kContactGroup).AddRead(name, read, help, type + "[+-U]");
-}
-
-}  // namespace
-
-UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
-                                   std::string_view unit) {
-  std::string stated(text);
-  std::string_view magnitude = "0";
-  for (const std::string_view separator : {"±", "+/-", "+-"}) {
-    const std::size_t at = text.find(separator);
-    if (at == std::string_view::npos) continue;
-    stated = text.substr(0, at);
-    magnitude = Trimmed(text.substr(at + separator.size()));
-    break;
-  }
-  const bool is_percentage = magnitude.ends_with('%');
-  if (is_percentage) magnitude.remove_suffix(1);
-  // A unit at the end is that of the value too.
-  if (Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
-    stated += magnitude.substr(BeginOfUnit(magnitude));
-  }
-  const std::optional<double> value = ParseQuantity(stated, unit);
-  std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
-  if (value && standard_error && is_percentage) *standard_error *= 0.01 * std::abs(*value);
-  if (value && standard_error && std::isfinite(*standard_error) && *standard_error >= 0) {
-    return {*value, *standard_error};
-  }
-  Refuse(
-      "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
-      "50+-0.5, 50+/-0.5 or 50±1%",
-      option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit));
-}
-
-void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction) {
-  const auto read = [&options](const std::string& text) {
-    std::vector<UncertainValue> each;
-    for (const std::string_view load : PartsOf(text, ',')) {
-      each.push_back(ParseUncertainValue(load, "--normal-load", "N"));
-    }
-    SetNormalLoads(options, each);
-  };
-  OptionGroup(command, kContactGroup)
-      .AddRead("--normal-load", read,
-               "normal load N [N]; in fit one for all files or one a file: 25,50,100;\nlike all "
-               "below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n50+/-0.5, 50±1%",
-               "N[+-U],...");
-  for (const auto& [body, number] :
-       {std::pair(&options.known.body_1, 1), {&options.known.body_2, 2}}) {
-    AddKnown(command, fmt::format("--youngs-modulus-{}", number), body->youngs_modulus,
-             fmt::format("Young's modulus of body {} [Pa]", number), "Pa", "PA");
-    AddKnown(command, fmt::format("--poisson-{}", number), body->poisson_ratio,
-             fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "-", "NU");
-    AddKnown(command, fmt::format("--radius-{}", number), body->radius,
-             fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
-             "m", "M");
-  }
-  AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "m",
-           "M");
-  AddKnown(command, "--compliance", options.known.tangential_compliance,
-           "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance", "1/Pa", "1/PA");
-  if (!has_friction) return;
-  AddKnown(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]", "-",
-           "MU");
-}
-
-void AddLawParameters(const OptionGroup& group, LawOptions& law) {
-  group.AddQuantity("--sigma", law.sigma, "tangential stiffness sigma [N/m]", "N/M", "N/m");
-  group.Add("--alpha", law.alpha, "shape exponent [-], default 1/3 where the model leaves it free",
-            "ALPHA");
-  group.AddQuantity("--slip-force", law.slip_force, "slip force Tc [N]", "N", "N");
-}
-
-double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
-  const double slip = models::GrossSlipDisplacement(law);
-  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
-         law.slip_force / rig.stiffness;
-}
-
-namespace {
 
 /// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
 std::string_view UnitOf(std::string_view parameter) {
@@ -225,6 +137,86 @@ std::string DescribeParameters() {
 }
 
 }  // namespace
+
+UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
+                                   std::string_view unit) {
+  std::string stated(text);
+  std::string_view magnitude = "0";
+  for (const std::string_view separator : {"±", "+/-", "+-"}) {
+    const std::size_t at = text.find(separator);
+    if (at == std::string_view::npos) continue;
+    stated = text.substr(0, at);
+    magnitude = Trimmed(text.substr(at + separator.size()));
+    break;
+  }
+  const bool is_percentage = magnitude.ends_with('%');
+  if (is_percentage) magnitude.remove_suffix(1);
+  // A unit at the end is that of the value too.
+  if (Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
+    stated += magnitude.substr(BeginOfUnit(magnitude));
+  }
+  const std::optional<double> value = ParseQuantity(stated, unit);
+  std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
+  if (value && standard_error && is_percentage) *standard_error *= 0.01 * std::abs(*value);
+  if (value && standard_error && std::isfinite(*standard_error) && *standard_error >= 0) {
+    return {*value, *standard_error};
+  }
+  Refuse(
+      "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
+      "50+-0.5, 50+/-0.5 or 50±1%",
+      option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit));
+}
+
+void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction) {
+  const auto read = [&options](const std::string& text) {
+    std::vector<UncertainValue> each;
+    for (const std::string_view load : PartsOf(text, ',')) {
+      each.push_back(ParseUncertainValue(load, "--normal-load", "N"));
+    }
+    SetNormalLoads(options, each);
+  };
+  const OptionGroup group(command, "What is known of the contact");
+  group.AddRead("--normal-load", read,
+                "normal load N [N]; in fit one for all files or one a file: 25,50,100;\nlike all "
+                "below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n50+/-0.5, 50±1%",
+                "N[+-U],...");
+  const auto add = [&group](const std::string& name, std::optional<UncertainValue>& target,
+                            const std::string& help, const std::string& unit,
+                            const std::string& type) {
+    const auto read_known = [&target, name, unit](const std::string& text) {
+      target = ParseUncertainValue(text, name, unit);
+    };
+    group.AddRead(name, read_known, help, type + "[+-U]");
+  };
+  for (const auto& [body, number] :
+       {std::pair(&options.known.body_1, 1), {&options.known.body_2, 2}}) {
+    add(fmt::format("--youngs-modulus-{}", number), body->youngs_modulus,
+        fmt::format("Young's modulus of body {} [Pa]", number), "Pa", "PA");
+    add(fmt::format("--poisson-{}", number), body->poisson_ratio,
+        fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "-", "NU");
+    add(fmt::format("--radius-{}", number), body->radius,
+        fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number), "m",
+        "M");
+  }
+  add("--contact-radius", options.known.contact_radius, "contact radius a [m]", "m", "M");
+  add("--compliance", options.known.tangential_compliance,
+      "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance", "1/Pa", "1/PA");
+  if (!has_friction) return;
+  add("--friction", options.friction_coefficient, "friction coefficient mu [-]", "-", "MU");
+}
+
+void AddLawParameters(const OptionGroup& group, LawOptions& law) {
+  group.AddQuantity("--sigma", law.sigma, "tangential stiffness sigma [N/m]", "N/M", "N/m");
+  group.Add("--alpha", law.alpha, "shape exponent [-], default 1/3 where the model leaves it free",
+            "ALPHA");
+  group.AddQuantity("--slip-force", law.slip_force, "slip force Tc [N]", "N", "N");
+}
+
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
+  const double slip = models::GrossSlipDisplacement(law);
+  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+         law.slip_force / rig.stiffness;
+}
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const OptionGroup group(command, kColumnGroup);
