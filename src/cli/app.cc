@@ -27,10 +27,6 @@ constexpr auto kCommands = std::to_array<Command>({{"fit", AddFitCommand},
                                                    {"track", AddTrackCommand},
                                                    {"batch", AddBatchCommand}});
 
-bool IsCommand(std::string_view name) {
-  return std::ranges::find(kCommands, name, &Command::first) != kCommands.end();
-}
-
 /// TOML whose keys are options of the command being run. A key that is none is an error: it is a
 /// misspelling.
 class CommandConfig : public CLI::ConfigTOML {
@@ -128,9 +124,10 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
 
   Console console{.out = results, .err = err, .command_line = CommandLine(argc, argv)};
   const std::string_view first = argc > 1 ? argv[1] : "";
+  const bool is_command = std::ranges::find(kCommands, first, &Command::first) != kCommands.end();
   for (const auto& [name, add] : kCommands) {
     // The options of the commands that do not run take a seventh of the time of a short fit.
-    if (name == first || !IsCommand(first)) add(app, console);
+    if (name == first || !is_command) add(app, console);
   }
 
   const auto refuse = [&](std::string_view why) {

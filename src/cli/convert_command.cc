@@ -11,7 +11,6 @@
 
 namespace mindahl::cli {
 
-using convert::LoopError;
 using convert::TargetRow;
 
 namespace {
@@ -109,7 +108,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
           {{"stiffness", jenkins->stiffness[j]}, {"slip_force", jenkins->slip_force[j]}});
     }
   }
-  const LoopError& error = made.at_amplitude;
+  const convert::LoopError& error = made.at_amplitude;
   std::string error_text = fmt::format(
       "at {:.6g} m the force is within {} of T*, the energy {}", amplitude, Percent(error.force),
       std::isfinite(error.energy) ? "off by " + Percent(error.energy)

@@ -1,5 +1,3 @@
-#include <fmt/ranges.h>
-
 #include <filesystem>
 #include <system_error>
 

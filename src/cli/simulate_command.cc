@@ -14,7 +14,6 @@ namespace mindahl::cli {
 
 using methods::Method;
 using models::FrictionModel;
-using tradeoff::Approximation;
 
 namespace {
 
@@ -68,7 +67,7 @@ void AddNoise(std::vector<double>& values, double standard_deviation, Draws& dra
 void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
-  Approximation approximation{options.model, options.method, {}};
+  tradeoff::Approximation approximation{options.model, options.method, {}};
   approximation.resolution.steps =
       options.steps.value_or(methods::FindMethod(options.method)->default_steps);
   const FrictionModel* model = models::FindFrictionModel(options.model);

@@ -8,7 +8,6 @@
 
 namespace mindahl::cli {
 
-using methods::Method;
 using models::BranchLaw;
 using models::Waveform;
 using tradeoff::WorkPrecision;
@@ -50,7 +49,7 @@ Json Measure(const std::string& name, const methods::Drive& drive, const BranchL
   const std::vector<WorkPrecision> points = tradeoff::MeasureWorkPrecision(law, drive);
   const Json rows = report::ListOf(points, [](const WorkPrecision& point) -> Json {
     const tradeoff::Approximation& approximation = point.approximation;
-    const Method* method = methods::FindMethod(approximation.method);
+    const methods::Method* method = methods::FindMethod(approximation.method);
     const bool has_steps = method != nullptr && !method->steps.empty();
     const bool is_adaptive = method != nullptr && method->adaptive;
     return {{"model", approximation.model},
