@@ -72,24 +72,21 @@ void Fill(const FitResult& fit, const UncertainValue& found, const Dependence& o
 }
 
 struct QuantityRow {
-  std::string_view name;
-  std::string_view symbol;
-  std::string_view unit;
-  std::string_view parameter;
-  double exponent;  // of the parameter, unless the contact radius is given
+  ContactQuantity quantity;  // without a value
+  double exponent;           // of its parameter, unless the contact radius is given
   Kind kind;
   bool is_of_sphere = true;  // follows only where Hertz's law of the load is not denied
 };
 
 constexpr std::array kQuantities = {
-    QuantityRow{"friction_coefficient", "μ", "-", "slip_force", 1, Kind::kFrictionCoefficient,
-                false},
-    QuantityRow{"contact_radius", "a", "m", "sigma", 1, Kind::kContactRadius, false},
-    QuantityRow{"compliance", "G*", "1/Pa", "sigma", -1, Kind::kTangentialCompliance, false},
-    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", 1, Kind::kStiffnessRatio,
-                false},
-    QuantityRow{"equivalent_radius", "ρ", "m", "sigma", 3, Kind::kEquivalentRadius},
-    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma", -2, Kind::kMaximumPressure},
+    QuantityRow{
+        {"friction_coefficient", "μ", "-", "slip_force"}, 1, Kind::kFrictionCoefficient, false},
+    QuantityRow{{"contact_radius", "a", "m", "sigma"}, 1, Kind::kContactRadius, false},
+    QuantityRow{{"compliance", "G*", "1/Pa", "sigma"}, -1, Kind::kTangentialCompliance, false},
+    QuantityRow{
+        {"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma"}, 1, Kind::kStiffnessRatio, false},
+    QuantityRow{{"equivalent_radius", "ρ", "m", "sigma"}, 3, Kind::kEquivalentRadius},
+    QuantityRow{{"maximum_pressure", "p₀", "Pa", "sigma"}, -2, Kind::kMaximumPressure},
 };
 
 /// False where a loop that slides measures another force in that direction: then the asymmetry and
@@ -147,9 +144,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   std::vector<ContactQuantity> quantities;
   for (const QuantityRow& row : kQuantities) {
-    ContactQuantity& quantity = quantities.emplace_back(ContactQuantity{
-        .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter});
-    const ParameterEstimate& parameter = *fit.Find(row.parameter);
+    ContactQuantity& quantity = quantities.emplace_back(row.quantity);
+    const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
     const bool has_radius = row.is_of_sphere && known.contact_radius;
     std::optional<UncertainValue> found;
     if (sigma.value > 0 && slip_force.value > 0 && !(row.is_of_sphere && denies_hertz)) {
@@ -158,7 +154,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     if (found) {
       Fill(fit, *found, {&parameter, has_radius ? 0.0 : row.exponent}, {&parameter}, quantity);
     }
-    if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
+    if (quantity.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
     quantities.push_back(SlipForce(fit, "slip_force_positive", "Tc up", 1));
     quantities.push_back(SlipForce(fit, "slip_force_negative", "down", -1));
   }
