@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string/replace.hpp>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -111,7 +110,7 @@ class Writer {
   /// Returns a parameter, with why it has no value where that is so.
   std::string TextOf(std::string_view symbol, const ParameterEstimate& estimate) {
     const std::string why = WhatIsShown(estimate).value ? "" : WhyNot(estimate.name);
-    return ParameterText(symbol, estimate) + (why.empty() ? "" : ": " + why);
+    return fmt::format("{} {}{}{}", symbol, ValueText(estimate), why.empty() ? "" : ": ", why);
   }
 
   /// Says a parameter with the quantities that follow from it: μ before it, the others behind.
@@ -357,7 +356,7 @@ std::vector<Line> DetailLines(const Report& report) {
     const bool is_nothing = WhatIsShown(estimate).is_held && estimate.value == 0;
     const bool is_said = std::ranges::find(terms, &estimate) != terms.end();
     if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
-    lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
+    lines.push_back({"parameter", fmt::format("{} {}", estimate.name, ValueText(estimate))});
   }
   for (const char* section : {"input", "measured", "adequacy", "residuals", "mapping", "solver"}) {
     std::vector<std::string> values;

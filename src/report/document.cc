@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -157,6 +156,14 @@ Json TermsJson(const Report& report) {
   return {{"mode", mode}, {"considered", std::move(considered)}, {"added", std::move(added)}};
 }
 
+Json NextJson(const std::optional<NextStep>& next) {
+  if (!next) return nullptr;
+  return {{"text", next->text},
+          {"options", next->options},
+          {"misfit_before", next->misfit_before},
+          {"misfit_after", next->misfit_after}};
+}
+
 /// Reasons of nulls by the path of a value or of an object that has it.
 using Reasons = std::map<std::string, std::string>;
 
@@ -211,13 +218,6 @@ Json DocumentOf(const Report& report) {
     cycles += record.facts.complete_cycles;
     reversals += record.reversals.size();
   }
-  Json next;
-  if (report.next) {
-    next = {{"text", report.next->text},
-            {"options", report.next->options},
-            {"misfit_before", report.next->misfit_before},
-            {"misfit_after", report.next->misfit_after}};
-  }
   Json document = {
       {"schema", "mindahl.fit/2"},
       {"version", Version()},
@@ -258,7 +258,7 @@ Json DocumentOf(const Report& report) {
         {"sigma_over_hertz_mindlin", NumberOrNull(report.ValueOf("sigma_over_hertz_mindlin"))}}},
       {"terms", TermsJson(report)},
       {"compared", ComparedModels(report)},
-      {"next", std::move(next)},
+      {"next", NextJson(report.next)},
       {"confidence", fit.confidence},
       {"warnings", ListOf(report.warnings, [](const Warning& warning) -> Json {
          return {{"code", warning.code}, {"message", warning.message}};

@@ -57,10 +57,6 @@ std::string ValueText(const ParameterEstimate& estimate) {
   return text.empty() ? "not determined" : is_held ? text + " (held)" : text;
 }
 
-std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
-  return fmt::format("{} {}", symbol, ValueText(estimate));
-}
-
 std::string PercentText(double share) {
   constexpr double kLeast = 1e-4;
   if (share > 0 && share < kLeast) return "< 0.01 %";

@@ -75,9 +75,6 @@ Shown WhatIsShown(const ParameterEstimate& estimate);
 /// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
 std::string ValueText(const ParameterEstimate& estimate);
 
-/// Returns the same behind a symbol: "σ 48.14 N/µm (48.07 … 48.22)".
-std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate);
-
 /// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
 std::string PercentText(double share);
 
