@@ -74,8 +74,7 @@ std::string Quantity(double value, std::string_view unit, int digits) {
   // 120 of two digits is not 1.2e+02, nor is 99.6.
   const double size = std::abs(number);
   const int places = size < 9.5 ? 1 : size < 99.5 ? 2 : size < 1000 ? kLeast : digits;
-  return fmt::format("{:.{}g}{}{}", number, std::max(digits, places),
-                     scaled.name.empty() ? "" : " ", scaled.name);
+  return scaled.Behind(fmt::format("{:.{}g}", number, std::max(digits, places)));
 }
 
 std::string RoundedTo(double error, double value) {
@@ -92,21 +91,13 @@ std::string RoundedTo(double error, double value) {
   return text;
 }
 
-namespace {
-
-std::string Joined(const std::string& number, const ScaledUnit& unit) {
-  return unit.name.empty() ? number : number + " " + unit.name;
-}
-
-}  // namespace
-
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit) {
   const double size = error.value_or(0.0);
   const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(value), size));
   const double scaled_error = size / scaled.factor;
   std::string number = RoundedTo(scaled_error, value / scaled.factor);
   if (size > 0) number.append(" ± ").append(RoundedTo(scaled_error, scaled_error));
-  return Joined(number, scaled);
+  return scaled.Behind(number);
 }
 
 std::string QuantityWithInterval(std::optional<double> value, std::optional<double> lower,
@@ -123,7 +114,7 @@ std::string QuantityWithInterval(std::optional<double> value, std::optional<doub
     return RoundedTo(half / scaled.factor, end / scaled.factor);
   };
   const auto end = [&](const std::optional<double>& at) { return at ? rounded(*at) : "open"; };
-  return fmt::format("{} ({} … {})", Joined(rounded(*value), scaled), end(lower), end(upper));
+  return fmt::format("{} ({} … {})", scaled.Behind(rounded(*value)), end(lower), end(upper));
 }
 
 std::string UnitOfTorque(std::string_view unit) {

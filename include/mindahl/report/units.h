@@ -37,6 +37,11 @@ std::string UnitOfTorque(std::string_view unit);
 struct ScaledUnit {
   double factor = 1.0;  ///< a number of these times it is one of the unit without prefix
   std::string name;     ///< empty of "-"
+
+  /// Returns a number that is written already with the unit behind it.
+  [[nodiscard]] std::string Behind(const std::string& number) const {
+    return name.empty() ? number : number + " " + name;
+  }
 };
 
 /// @param unit  one that the reports use, as "m", "N/m" or "N m"; of another the factor is 1
