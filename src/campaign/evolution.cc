@@ -196,7 +196,68 @@ std::optional<Change> StepBetween(const Segment& before, const Segment& after, c
   return is_large && step.p_value < kChance ? std::optional(step) : std::nullopt;
 }
 
+constexpr std::array kQuantities = {
+    TrackedQuantity{"friction_coefficient", "μ", ""},
+    TrackedQuantity{"slip_force", "Tc", "slip_force_open"},
+    TrackedQuantity{"half_gap", "half gap", ""},
+    TrackedQuantity{"sigma", "σ", "sigma_open"},
+    TrackedQuantity{"contact_radius", "a", "sigma_open"},
+    TrackedQuantity{"alpha", "", "alpha_open"},
+    TrackedQuantity{"energy", "", ""},
+    TrackedQuantity{"energy_ratio", "", ""},
+};
+
+/// Returns "p = 0.01"; no p-value is 0.
+std::string ChanceText(double p_value) {
+  constexpr double kLeast = 1e-12;
+  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.1g}", p_value);
+}
+
+/// Returns "+60 %"; nothing where the sign changes or it grows more than
+/// tenfold.
+std::string RelativeChange(double from, double to) {
+  constexpr double kMost = 10;
+  const double change = to / from - 1;
+  if (!(change > -1 && change < kMost)) return "";
+  return fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 0.1 ? 1 : 0);
+}
+
+/// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
+std::string FromTo(double from, double to, const std::string& unit) {
+  const double largest = std::max(std::abs(from), std::abs(to));
+  const report::ScaledUnit scaled = report::UnitFor(unit, largest);
+  const auto text = [&](double value) {
+    return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
+  };
+  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : " → " + text(to)));
+}
+
 }  // namespace
+
+void Course::Bin::Merge(const Bin& next) {
+  last_cycle = next.last_cycle;
+  least = std::min(least, next.least);
+  greatest = std::max(greatest, next.greatest);
+  count += next.count;
+  cycle += (next.cycle - cycle) * next.count / count;
+  value += (next.value - value) * next.count / count;
+}
+
+void Course::Add(std::size_t cycle, double value) {
+  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, value, value, 1};
+  if (bins_.empty()) first_ = value;
+  last_ = value;
+  if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
+  if (bins_.size() == kMostBins) {
+    for (std::size_t i = 0; i < kMostBins / 2; ++i) {
+      bins_[i] = bins_[2 * i];
+      bins_[i].Merge(bins_[2 * i + 1]);
+    }
+    bins_.resize(kMostBins / 2);
+    width_ *= 2;
+  }
+  bins_.push_back(one);
+}
 
 std::optional<CourseDescription> Describe(const Course& course) {
   if (course.bins().empty()) return std::nullopt;
@@ -236,101 +297,6 @@ std::optional<CourseDescription> Describe(const Course& course) {
   description.to = LineThrough(course.bins().last(kOfAnEnd)).level;
   return description;
 }
-
-void Course::Bin::Merge(const Bin& next) {
-  last_cycle = next.last_cycle;
-  least = std::min(least, next.least);
-  greatest = std::max(greatest, next.greatest);
-  count += next.count;
-  cycle += (next.cycle - cycle) * next.count / count;
-  value += (next.value - value) * next.count / count;
-}
-
-void Course::Add(std::size_t cycle, double value) {
-  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, value, value, 1};
-  if (bins_.empty()) first_ = value;
-  last_ = value;
-  if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
-  if (bins_.size() == kMostBins) {
-    for (std::size_t i = 0; i < kMostBins / 2; ++i) {
-      bins_[i] = bins_[2 * i];
-      bins_[i].Merge(bins_[2 * i + 1]);
-    }
-    bins_.resize(kMostBins / 2);
-    width_ *= 2;
-  }
-  bins_.push_back(one);
-}
-
-namespace {
-
-constexpr std::array kQuantities = {
-    TrackedQuantity{"friction_coefficient", "μ", ""},
-    TrackedQuantity{"slip_force", "Tc", "slip_force_open"},
-    TrackedQuantity{"half_gap", "half gap", ""},
-    TrackedQuantity{"sigma", "σ", "sigma_open"},
-    TrackedQuantity{"contact_radius", "a", "sigma_open"},
-    TrackedQuantity{"alpha", "", "alpha_open"},
-    TrackedQuantity{"energy", "", ""},
-    TrackedQuantity{"energy_ratio", "", ""},
-};
-
-/// Returns "p = 0.01"; no p-value is 0.
-std::string ChanceText(double p_value) {
-  constexpr double kLeast = 1e-12;
-  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.1g}", p_value);
-}
-
-/// Returns "+60 %"; nothing where the sign changes or it grows more than
-/// tenfold.
-std::string RelativeChange(double from, double to) {
-  constexpr double kMost = 10;
-  const double change = to / from - 1;
-  if (!(change > -1 && change < kMost)) return "";
-  return fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 0.1 ? 1 : 0);
-}
-
-/// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
-std::string FromTo(double from, double to, const std::string& unit) {
-  const double largest = std::max(std::abs(from), std::abs(to));
-  const report::ScaledUnit scaled = report::UnitFor(unit, largest);
-  const auto text = [&](double value) {
-    return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
-  };
-  const std::string last = text(to) == text(from) ? "" : " → " + text(to);
-  return fmt::format("{}{}{}{}", text(from), last, scaled.name.empty() ? "" : " ", scaled.name);
-}
-
-io::PlotPanel EvolutionPanel(const Evolution& evolution) {
-  constexpr double kShade = 0.3;  // of what is measured
-  constexpr double kManyCycles = 100;
-  const std::span<const Course::Bin> bins = evolution.course.bins();
-  io::PlotPanel panel{.log_x = bins.back().cycle >= kManyCycles * bins.front().cycle};
-  io::PlotSeries course{.shade = kShade};
-  io::PlotSeries range{.style = io::PlotStyle::kArea, .shade = kShade};  // up there, down back
-  for (const Course::Bin& bin : bins) {
-    course.x.push_back(bin.cycle);
-    course.y.push_back(bin.value);
-    range.y.push_back(bin.greatest);
-  }
-  range.x = course.x;
-  range.x.insert(range.x.end(), course.x.rbegin(), course.x.rend());
-  for (std::size_t k = bins.size(); k-- > 0;) range.y.push_back(bins[k].least);
-  panel.series = {std::move(range), std::move(course)};
-  report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
-  for (const Change& step : evolution.description.changes) {
-    if (!step.is_step()) continue;
-    panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
-                           .label = fmt::format("step, {}", step.first_cycle)});
-  }
-  if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
-    panel.marks.push_back(
-        {.x = static_cast<double>(*settled), .label = fmt::format("settled, {}", *settled)});
-  }
-  return panel;
-}
-
-}  // namespace
 
 std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
@@ -419,9 +385,35 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
 }
 
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
+  constexpr double kShade = 0.3;  // of what is measured
+  constexpr double kManyCycles = 100;
   std::vector<io::PlotPanel> panels;
   for (const Evolution& evolution : evolutions) {
-    if (evolution.course.bins().size() > 1) panels.push_back(EvolutionPanel(evolution));
+    const std::span<const Course::Bin> bins = evolution.course.bins();
+    if (bins.size() < 2) continue;
+    io::PlotPanel& panel = panels.emplace_back();
+    panel.log_x = bins.back().cycle >= kManyCycles * bins.front().cycle;
+    io::PlotSeries course{.shade = kShade};
+    io::PlotSeries range{.style = io::PlotStyle::kArea, .shade = kShade};  // up there, down back
+    for (const Course::Bin& bin : bins) {
+      course.x.push_back(bin.cycle);
+      course.y.push_back(bin.value);
+      range.y.push_back(bin.greatest);
+    }
+    range.x = course.x;
+    range.x.insert(range.x.end(), course.x.rbegin(), course.x.rend());
+    for (std::size_t k = bins.size(); k-- > 0;) range.y.push_back(bins[k].least);
+    panel.series = {std::move(range), std::move(course)};
+    report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
+    for (const Change& step : evolution.description.changes) {
+      if (!step.is_step()) continue;
+      panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
+                             .label = fmt::format("step, {}", step.first_cycle)});
+    }
+    if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
+      panel.marks.push_back(
+          {.x = static_cast<double>(*settled), .label = fmt::format("settled, {}", *settled)});
+    }
   }
   return panels;
 }
