@@ -21,10 +21,8 @@ namespace mindahl::campaign {
 
 namespace {
 
-using identification::Depth;
 using identification::FitOptions;
 using identification::FitResult;
-using identification::ParameterEstimate;
 
 constexpr std::array kFlags = {
     CycleFlag{"not_converged", "the fit failed or did not converge; its values are not to be used"},
@@ -75,11 +73,24 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
 
 /// Takes over a parameter with its standard error, and whether the cycle determines it.
 void FillParameter(const FitResult& result, const std::string& name, CycleFit& fit) {
-  const ParameterEstimate* estimate = result.Find(name);
+  const identification::ParameterEstimate* estimate = result.Find(name);
   if (estimate == nullptr) return;
   if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
   fit[name] = estimate->value;
   if (estimate->standard_error) fit[name + "_error"] = result.ErrorOf(*estimate);
+}
+
+// A torque about the contact has no contact radius, the last of them.
+static_assert(kCycleNumbers.back().name == "contact_radius");
+
+std::size_t CountOfNumbers(bool is_torsional) {
+  return kCycleNumbers.size() - (is_torsional ? 1 : 0);
+}
+
+template <typename Value>
+Value CellValue(std::string_view cell) {
+  if (const auto value = NumberIn<Value>(cell)) return *value;
+  throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
 }  // namespace
@@ -106,7 +117,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   }
   const FitResult* result = nullptr;
   try {
-    result = &fitter_.Continue(record, Depth::kErrors);
+    result = &fitter_.Continue(record, identification::Depth::kErrors);
   } catch (const InvalidArgument&) {
     // Too few samples, a displacement that stands still: no record to fit, as the flag says.
     fit.flags.emplace_back("not_converged");
@@ -131,23 +142,6 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   }
   return fit;
 }
-
-namespace {
-
-// A torque about the contact has no contact radius, the last of them.
-static_assert(kCycleNumbers.back().name == "contact_radius");
-
-std::size_t CountOfNumbers(bool is_torsional) {
-  return kCycleNumbers.size() - (is_torsional ? 1 : 0);
-}
-
-template <typename Value>
-Value CellValue(std::string_view cell) {
-  if (const auto value = NumberIn<Value>(cell)) return *value;
-  throw InputError(fmt::format("'{}' is not a number", cell));
-}
-
-}  // namespace
 
 std::string CycleTableHeader(bool is_torsional) {
   std::string header = "cycle,first_line,samples";

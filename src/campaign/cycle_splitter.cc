@@ -13,9 +13,14 @@ namespace mindahl::campaign {
 
 namespace {
 
-template <typename Column, typename Value>
-void AppendColumn(const Column& from, std::vector<Value>& to) {
-  to.insert(to.end(), from.begin(), from.end());
+void Append(const loop::RecordView& samples, std::span<const std::size_t> lines, io::Samples& to) {
+  const std::array columns = {samples.displacement, samples.force, samples.time,
+                              samples.normal_load};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    std::vector<double>& column = to.*loop::kRecordColumns[k];
+    column.insert(column.end(), columns[k].begin(), columns[k].end());
+  }
+  to.lines.insert(to.lines.end(), lines.begin(), lines.end());
 }
 
 template <typename Value>
@@ -34,12 +39,7 @@ CycleSplitter::CycleSplitter(double gate, std::size_t together)
 
 void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::size_t> lines,
                         std::vector<Cycle>& cycles) {
-  const std::array columns = {samples.displacement, samples.force, samples.time,
-                              samples.normal_load};
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    AppendColumn(columns[k], kept_.*loop::kRecordColumns[k]);
-  }
-  AppendColumn(lines, kept_.lines);
+  Append(samples, lines, kept_);
   for (const double displacement : samples.displacement) {
     if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Complete(*turn, cycles);
   }
@@ -85,8 +85,6 @@ std::size_t CycleSplitter::Restart() {
   return left;
 }
 
-using identification::FitOptions;
-
 io::Samples ReadHead(io::RecordStream& stream) {
   constexpr std::size_t kReversals = 8;
   constexpr std::size_t kMostSamples = 1'000'000;
@@ -94,8 +92,7 @@ io::Samples ReadHead(io::RecordStream& stream) {
   io::Samples piece;
   std::size_t next_look = 1;  // at twice as much each time: a look is at all of it
   while (head.size() < kMostSamples && stream.Next(piece)) {
-    for (const auto column : loop::kRecordColumns) AppendColumn(piece.*column, head.*column);
-    AppendColumn(piece.lines, head.lines);
+    Append(piece, piece.lines, head);
     if (head.size() < next_look) continue;
     const double gate = loop::ChooseReversalGate(head.displacement).gate;
     if (loop::FindReversals(head.displacement, gate).size() >= kReversals) break;
@@ -104,7 +101,7 @@ io::Samples ReadHead(io::RecordStream& stream) {
   return head;
 }
 
-loop::ReversalGate ChooseGate(const loop::RecordView& head, FitOptions& fit) {
+loop::ReversalGate ChooseGate(const loop::RecordView& head, identification::FitOptions& fit) {
   const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation);
   loop::ReversalGate gate = prepared.records.front().gate;
   fit.preparation.reversal_gate = gate.gate;

@@ -6,17 +6,6 @@
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign {
-namespace {
-
-std::vector<CycleFit> FitBatch(const TrackOptions& options, const std::vector<Cycle>& cycles) {
-  CycleFitter fitter(options.fit, options.compliance);
-  std::vector<CycleFit> fits;
-  fits.reserve(cycles.size());
-  for (const Cycle& cycle : cycles) fits.push_back(fitter.Fit(cycle));
-  return fits;
-}
-
-}  // namespace
 
 Tracker::Tracker(TrackOptions options, Done done)
     : options_(std::move(options)),
@@ -62,7 +51,13 @@ void Tracker::Begin() {
   // std::async defers the fit if no thread can be started, but has then moved from its argument:
   // the function is therefore copied.
   const auto cycles = std::make_shared<const std::vector<Cycle>>(std::exchange(batch_, {}));
-  const auto fit = [this, cycles] { return FitBatch(options_, *cycles); };
+  const auto fit = [this, cycles] {
+    CycleFitter fitter(options_.fit, options_.compliance);
+    std::vector<CycleFit> fits;
+    fits.reserve(cycles->size());
+    for (const Cycle& cycle : *cycles) fits.push_back(fitter.Fit(cycle));
+    return fits;
+  };
   const auto policy =
       options_.threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
   begun_.push_back(std::async(policy, fit));
