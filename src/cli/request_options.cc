@@ -239,9 +239,9 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
 void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
   identification::FitOptions& fit = options.fit;
-  std::vector<std::pair<std::string, const models::FrictionModel*>> models;
-  for (const std::string_view name : request::ModelNames()) {
-    models.emplace_back(name, models::FindFrictionModel(name));
+  std::vector<std::pair<std::string, const models::FrictionModel*>> models = {{"auto", nullptr}};
+  for (const models::FrictionModel& model : models::FrictionModels()) {
+    models.emplace_back(model.name, &model);
   }
   group.AddChoice("--model", fit.model, std::move(models), DescribeModels());
   group.AddFlag("--compare", options.compare,

@@ -1,14 +1,11 @@
 #include "mindahl/request/fit_request.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "core/refuse.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/models/friction_model.h"
 
 namespace mindahl::request {
 
@@ -71,12 +68,6 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
 }
 
 }  // namespace
-
-std::vector<std::string_view> ModelNames() {
-  std::vector<std::string_view> names = {"auto"};
-  for (const models::FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
-  return names;
-}
 
 FitOptions MakeFitOptions(const FitRequest& request) {
   FitOptions fit = request.fit;

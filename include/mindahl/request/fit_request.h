@@ -17,9 +17,6 @@ namespace mindahl::request {
 /// same rules and the same messages for the command line and for Python. Messages name the command
 /// line's options.
 
-/// Models that can be fitted, "auto" first.
-std::vector<std::string_view> ModelNames();
-
 /// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
 /// be.
 struct FitRequest {
