@@ -10,7 +10,6 @@
 #include <cmath>
 #include <future>
 #include <new>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -33,16 +32,16 @@ constexpr std::array kParameters = {"sigma", "alpha", "slip_force"};
 
 /// A quantity that repeats of a test have in common, by the names of its columns.
 struct Repeated {
-  std::string_view name;
-  std::string_view parameter;  // whose errors it has; "" of what is measured, which states none
+  std::string name;
+  std::string parameter;  // whose errors it has; "" of what is measured, which states none
   std::string_view unit;
 };
-constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
-                                  Repeated{"alpha", "alpha", "-"},
-                                  Repeated{"slip_force", "slip_force", "N"},
-                                  Repeated{"friction_coefficient", "slip_force", "-"},
-                                  Repeated{"half_gap", "", "N"},
-                                  Repeated{"energy_per_cycle", "", "J"}};
+const std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
+                              Repeated{"alpha", "alpha", "-"},
+                              Repeated{"slip_force", "slip_force", "N"},
+                              Repeated{"friction_coefficient", "slip_force", "-"},
+                              Repeated{"half_gap", "", "N"},
+                              Repeated{"energy_per_cycle", "", "J"}};
 
 /// Returns the row of a file in the table.
 /// @param fit  its JSON, null where it has none
@@ -94,9 +93,7 @@ constexpr std::string_view kSeveralLaws =
 Json RepeatRows(const Json& table, bool has_several_laws) {
   const double seen_loop = identification::Thresholds().seen_loop;
   Json repeats = Json::object();
-  for (const Repeated& quantity : kRepeated) {
-    const std::string name(quantity.name);
-    const std::string parameter(quantity.parameter);
+  for (const auto& [name, parameter, unit] : kRepeated) {
     if (has_several_laws && !parameter.empty()) continue;
     std::vector<double> values;
     std::vector<double> squares;  // of the errors
@@ -124,7 +121,7 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
         {"mean", statistics::mean(values)},
         {"standard_deviation", std::sqrt(statistics::sample_variance(values))},
         {"stated_error", squares.empty() ? Json() : Json(std::sqrt(statistics::mean(squares)))},
-        {"unit", quantity.unit}};
+        {"unit", unit}};
   }
   return repeats;
 }

@@ -11,14 +11,6 @@ using contact::KnownBody;
 using contact::UncertainValue;
 using models::BranchLaw;
 
-namespace {
-
-bool IsAnythingGiven(const KnownBody& body) {
-  return body.youngs_modulus || body.poisson_ratio || body.radius;
-}
-
-}  // namespace
-
 void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loads) {
   double sum = 0.0;
   double variance = 0.0;
@@ -36,9 +28,11 @@ void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loa
 
 bool IsAnythingGiven(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
+  const auto is_any_known = [](const KnownBody& body) {
+    return body.youngs_modulus || body.poisson_ratio || body.radius;
+  };
   return options.friction_coefficient || known.normal_load || known.contact_radius ||
-         known.tangential_compliance || IsAnythingGiven(known.body_1) ||
-         IsAnythingGiven(known.body_2);
+         known.tangential_compliance || is_any_known(known.body_1) || is_any_known(known.body_2);
 }
 
 void Validate(const ContactOptions& options, std::size_t records) {
