@@ -305,6 +305,22 @@ class Writer {
   std::vector<const Finding*> said_;
 };
 
+constexpr std::size_t kTextWidth = 100;
+constexpr std::size_t kLabel = 14;  // where texts begin
+
+std::string LinesText(const std::vector<Line>& lines) {
+  std::string text;
+  const std::string indent = '\n' + std::string(kLabel, ' ');
+  for (const Line& line : lines) {
+    // An interval is not broken.
+    const std::string whole = boost::replace_all_copy(line.text, " … ", "\t…\t");
+    text += fmt::format("{:<{}}{}\n", line.label, kLabel,
+                        fmt::join(LinesOf(PartsOf(whole, ' '), kTextWidth - kLabel), indent));
+  }
+  std::ranges::replace(text, '\t', ' ');
+  return text;
+}
+
 }  // namespace
 
 std::string MisfitStatement(const Report& report) {
@@ -376,26 +392,6 @@ std::vector<Line> DetailLines(const Report& report) {
   }
   return lines;
 }
-
-namespace {
-
-constexpr std::size_t kTextWidth = 100;
-constexpr std::size_t kLabel = 14;  // where texts begin
-
-std::string LinesText(const std::vector<Line>& lines) {
-  std::string text;
-  const std::string indent = '\n' + std::string(kLabel, ' ');
-  for (const Line& line : lines) {
-    // An interval is not broken.
-    const std::string whole = boost::replace_all_copy(line.text, " … ", "\t…\t");
-    text += fmt::format("{:<{}}{}\n", line.label, kLabel,
-                        fmt::join(LinesOf(PartsOf(whole, ' '), kTextWidth - kLabel), indent));
-  }
-  std::ranges::replace(text, '\t', ' ');
-  return text;
-}
-
-}  // namespace
 
 std::string ToText(const Report& report, Detail detail) {
   RequireFitted(report, "a text");

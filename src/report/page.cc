@@ -29,52 +29,6 @@ std::string LabelOf(const Report& report, std::size_t r) {
   return NameOf({&report.records[r].name, 1});
 }
 
-constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
-
-}  // namespace
-
-io::Plot ToPlot(const Report& report) {
-  RequireFitted(report, "a figure");
-  PlotPanel measured = {.height = 1.2};
-  PlotPanel residual = {.height = 0.45};
-  const std::size_t records = report.records.size();
-  std::vector<PlotSeries> lines;
-  for (std::size_t r = 0; r < records; ++r) {
-    const loop::Record& record = report.records[r].record;
-    const RecordFit& fit = report.fit.records[r];
-    const std::string label = LabelOf(report, r);
-    const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
-                         const std::vector<double>& x, const std::vector<double>& y,
-                         std::optional<double> shade = {}) {
-      if (!y.empty())
-        to.push_back({.label = std::move(name), .x = x, .y = y, .style = style, .shade = shade});
-    };
-    const double shade =
-        records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
-    add(measured.series, label.empty() ? "measured" : label, PlotStyle::kPoints,
-        record.displacement, record.force, shade);
-    const std::vector<double>& along_fit =
-        fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
-    add(lines, r > 0 ? "" : "fitted", PlotStyle::kLine, along_fit, fit.fitted_force);
-    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, shade);
-    if (report.next && r < report.next->fitted_force.size()) {
-      add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r]);
-    }
-  }
-  measured.series.insert(measured.series.end(), lines.begin(), lines.end());
-  const Units& units = report.units;
-  const bool is_torsional = report.is_torsional();
-  const char* const along = is_torsional ? "angle" : "displacement";
-  ScaleAxes(measured, along, units.displacement, is_torsional ? "torque" : "force", units.force);
-  ScaleAxes(residual, along, units.displacement, "fitted − measured", units.response);
-  measured.x_label.clear();  // the residual below has it
-  return {.title = fmt::format("{}: {}", NameOf(report.files()), VerdictWord(report)),
-          .panels = {std::move(measured), std::move(residual)}};
-}
-
-namespace {
-
 std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) {
   std::vector<TableLine> rows;
   for (const Line& line : lines) {
@@ -165,6 +119,47 @@ std::string IntervalsHtml(const Report& report) {
 }
 
 }  // namespace
+
+io::Plot ToPlot(const Report& report) {
+  RequireFitted(report, "a figure");
+  PlotPanel measured = {.height = 1.2};
+  PlotPanel residual = {.height = 0.45};
+  const std::size_t records = report.records.size();
+  std::vector<PlotSeries> lines;
+  for (std::size_t r = 0; r < records; ++r) {
+    const loop::Record& record = report.records[r].record;
+    const RecordFit& fit = report.fit.records[r];
+    const std::string label = LabelOf(report, r);
+    const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
+                         const std::vector<double>& x, const std::vector<double>& y,
+                         std::optional<double> shade = {}) {
+      if (!y.empty())
+        to.push_back({.label = std::move(name), .x = x, .y = y, .style = style, .shade = shade});
+    };
+    // The first shade of a record that is alone is apart from the two lines that are fitted.
+    const double shade =
+        records == 1 ? 0.0 : static_cast<double>(r) / static_cast<double>(records - 1);
+    add(measured.series, label.empty() ? "measured" : label, PlotStyle::kPoints,
+        record.displacement, record.force, shade);
+    const std::vector<double>& along_fit =
+        fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
+    add(lines, r > 0 ? "" : "fitted", PlotStyle::kLine, along_fit, fit.fitted_force);
+    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, shade);
+    if (report.next && r < report.next->fitted_force.size()) {
+      add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
+          record.displacement, report.next->fitted_force[r]);
+    }
+  }
+  measured.series.insert(measured.series.end(), lines.begin(), lines.end());
+  const Units& units = report.units;
+  const bool is_torsional = report.is_torsional();
+  const char* const along = is_torsional ? "angle" : "displacement";
+  ScaleAxes(measured, along, units.displacement, is_torsional ? "torque" : "force", units.force);
+  ScaleAxes(residual, along, units.displacement, "fitted − measured", units.response);
+  measured.x_label.clear();  // the residual below has it
+  return {.title = fmt::format("{}: {}", NameOf(report.files()), VerdictWord(report)),
+          .panels = {std::move(measured), std::move(residual)}};
+}
 
 std::string ToPage(const Report& report, std::string_view command) {
   const std::string word(VerdictWord(report));

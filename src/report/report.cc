@@ -17,14 +17,6 @@ namespace mindahl::report {
 
 namespace {
 
-void Require(const ReportInput& input) {
-  const std::size_t records = input.fit.records.size();
-  if (records == 0 || input.fit.model == nullptr) {
-    throw InvalidArgument("there is nothing to report: the fit has no record or no model");
-  }
-  RequireSameSize("records", input.records.size(), "records of the fit", records);
-}
-
 /// Puts the fit into the units of a torque.
 void TranslateToTorque(Report& report) {
   report.units = kUnitsOfTorque;
@@ -167,7 +159,11 @@ std::optional<double> Report::ValueOf(std::string_view quantity) const {
 }
 
 Report MakeReport(ReportInput input) {
-  Require(input);
+  const std::size_t records = input.fit.records.size();
+  if (records == 0 || input.fit.model == nullptr) {
+    throw InvalidArgument("there is nothing to report: the fit has no record or no model");
+  }
+  RequireSameSize("records", input.records.size(), "records of the fit", records);
   Report report;
   static_cast<ReportInput&>(report) = std::move(input);
   CountSamples(report);
