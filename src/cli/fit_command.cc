@@ -41,13 +41,12 @@ void RunFit(const FitCommandOptions& options, Console& console) {
 }  // namespace
 
 void AddFitCommand(CLI::App& app, Console& console) {
-  constexpr const char* kAbout =
-      "Fits sigma, alpha and Tc to one or more records of a contact (several\n"
-      "files: one joint fit) and translates them into the contact. Exit\n"
-      "status 3 when the fit does not converge or, with --strict, the model\n"
-      "is not adequate or a parameter not identifiable.";
   const auto [command, options] =
-      AddCommand(app, console, "fit", kAbout,
+      AddCommand(app, console, "fit",
+                 "Fits sigma, alpha and Tc to one or more records of a contact (several\n"
+                 "files: one joint fit) and translates them into the contact. Exit\n"
+                 "status 3 when the fit does not converge or, with --strict, the model\n"
+                 "is not adequate or a parameter not identifiable.",
                  {"mindahl fit loop.csv --normal-load 50",
                   "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
                   "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"},

@@ -25,15 +25,14 @@ struct TradeoffOptions {
 
 struct Scene {
   std::string_view name;
-  Waveform waveform;
   double lambda;  // of the largest extreme
-  double cycles;
+  models::ExcitationOptions excitation;
 };
 
 constexpr std::array kScenes = {
-    Scene{"micro-slip, sine", Waveform::kSine, 0.8, 5},
-    Scene{"macro-slip, sine", Waveform::kSine, 1.2, 5},
-    Scene{"growing sine", Waveform::kGrowingSine, 1.5, 10},
+    Scene{"micro-slip, sine", 0.8, {.waveform = Waveform::kSine, .cycles = 5}},
+    Scene{"macro-slip, sine", 1.2, {.waveform = Waveform::kSine, .cycles = 5}},
+    Scene{"growing sine", 1.5, {.waveform = Waveform::kGrowingSine, .cycles = 10}},
 };
 
 /// The contact of Peyret et al. (2017) §3.
@@ -73,12 +72,11 @@ Json MeasureAll(const TradeoffOptions& request, const BranchLaw& law) {
         {Measure(request.path, {.displacement = displacement}, law, request.tolerance)});
   }
   return report::ListOf(kScenes, [&](const Scene& scene) {
-    const models::Excitation excitation =
-        models::MakeExcitation({.waveform = scene.waveform,
-                                .amplitude = scene.lambda * SlipReach(law),
-                                .cycles = scene.cycles});
+    models::ExcitationOptions options = scene.excitation;
+    options.amplitude = scene.lambda * SlipReach(law);
+    const models::Excitation excitation = models::MakeExcitation(options);
     methods::Drive drive{.displacement = excitation.displacement};
-    if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
+    if (options.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
     return Measure(fmt::format("{}, lambda = {:g}", scene.name, scene.lambda), drive, law,
                    request.tolerance);
   });
