@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "cli/command.h"
-#include "mindahl/io/output_file.h"
 #include "mindahl/request/batch.h"
 
 namespace mindahl::cli {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
@@ -18,6 +19,9 @@
 #include "core/refuse.h"
 #include "core/text.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/core/units.h"
+#include "mindahl/io/output_file.h"
+#include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/models/response.h"
 #include "mindahl/report/report.h"

@@ -1,6 +1,3 @@
-#include <fmt/ranges.h>
-
-#include <cmath>
 #include <fstream>
 #include <variant>
 

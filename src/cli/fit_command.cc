@@ -1,6 +1,4 @@
 #include "cli/command.h"
-#include "mindahl/io/output_file.h"
-#include "mindahl/io/plot.h"
 
 namespace mindahl::cli {
 namespace {

@@ -1,9 +1,4 @@
-#include <fmt/ranges.h>
-
 #include "cli/command.h"
-#include "core/refuse.h"
-#include "core/text.h"
-#include "mindahl/core/units.h"
 
 namespace mindahl::cli {
 

@@ -2,8 +2,6 @@
 #include <system_error>
 
 #include "cli/command.h"
-#include "mindahl/io/output_file.h"
-#include "mindahl/io/plot.h"
 
 namespace mindahl::cli {
 

@@ -1,12 +1,8 @@
-#include <fmt/ranges.h>
-
 #include <array>
 
 #include "cli/command.h"
-#include "mindahl/core/units.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
-#include "mindahl/io/plot.h"
 
 namespace mindahl::cli {
 

@@ -1,10 +1,5 @@
-#include <fmt/ranges.h>
-
-#include <cmath>
 
 #include "cli/command.h"
-#include "core/text.h"
-#include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"

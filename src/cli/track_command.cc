@@ -1,5 +1,3 @@
-#include <fmt/ranges.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -11,8 +9,6 @@
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/interruption.h"
-#include "mindahl/io/output_file.h"
-#include "mindahl/io/plot.h"
 #include "mindahl/report/units.h"
 #include "report/html.h"
 

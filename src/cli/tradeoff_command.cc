@@ -1,8 +1,6 @@
 #include <array>
 
 #include "cli/command.h"
-#include "mindahl/io/output_file.h"
-#include "mindahl/io/plot.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/work_precision.h"
 
