@@ -298,8 +298,6 @@ std::optional<CourseDescription> Describe(const Course& course) {
   return description;
 }
 
-std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
-
 std::vector<Evolution> BeginEvolutions(bool is_torsional) {
   std::vector<Evolution> evolutions;
   for (const TrackedQuantity& quantity : kQuantities) {

@@ -10,8 +10,11 @@ namespace {
 
 /// A quantity by its name, described by hand.
 Evolution Of(std::string_view name, std::string unit, CourseDescription description) {
-  Evolution evolution{.unit = std::move(unit), .description = std::move(description)};
-  evolution.quantity = &*std::ranges::find(TrackedQuantities(), name, &TrackedQuantity::name);
+  std::vector<Evolution> all = BeginEvolutions(false);
+  Evolution& evolution = *std::ranges::find_if(
+      all, [&](const Evolution& each) { return each.quantity->name == name; });
+  evolution.unit = std::move(unit);
+  evolution.description = std::move(description);
   for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
     evolution.course.Add(cycle, cycle % 2 == 0 ? 5e7 : 4e7);
   }

@@ -89,9 +89,6 @@ struct TrackedQuantity {
   std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
 };
 
-/// Returns all of them, in the order of the report.
-std::span<const TrackedQuantity> TrackedQuantities();
-
 /// The time history of a quantity and what is said of it.
 struct Evolution {
   const TrackedQuantity* quantity = nullptr;
