@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string/replace.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -100,9 +101,7 @@ class Writer {
           std::ranges::find(finding.parameters, parameter) != finding.parameters.end();
       if (!names_it || finding.code.row().verdict == Identifiability::kIdentifiable) continue;
       if (IsSaidByALine(finding.code)) return "";
-      if (std::ranges::find(said_, &finding) != said_.end()) return "";
-      said_.push_back(&finding);
-      return Sentence(finding, fit_, report_.units);
+      return said_.insert(&finding).second ? Sentence(finding, fit_, report_.units) : "";
     }
     return "";
   }
@@ -289,9 +288,8 @@ class Writer {
     for (const Finding& finding : fit_.findings) {
       const bool is_note =
           finding.severity == identification::Severity::kNote && finding.code != "shape_or_rig";
-      const bool is_said = std::ranges::find(said_, &finding) != said_.end();
       const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
-      if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
+      if (is_note || is_moot || said_.contains(&finding) || IsSaidByALine(finding.code)) continue;
       Add("note", WarningText(finding, report_), kPoor);
     }
     for (const Warning& warning : report_.warnings) {
@@ -302,7 +300,7 @@ class Writer {
   const Report& report_;
   const FitResult& fit_;
   std::vector<Line> lines_;
-  std::vector<const Finding*> said_;
+  std::set<const Finding*> said_;
 };
 
 constexpr std::size_t kTextWidth = 100;

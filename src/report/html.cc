@@ -12,11 +12,7 @@ namespace mindahl::report {
 
 using io::HtmlText;
 
-namespace {
-
 constexpr int kWidth = 560;  // [px] of a figure
-
-}  // namespace
 
 std::string PageHtml(std::string_view title, std::string_view body) {
   return fmt::format(R"(<!DOCTYPE html>
