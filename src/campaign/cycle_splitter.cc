@@ -64,11 +64,10 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
   Cycle& cycle = cycles.emplace_back(
       Cycle{.number = cycles_ + 1, .first_line = kept_.lines[begin_], .record = {}});
   for (const auto column : loop::kRecordColumns) {
-    const std::vector<double>& values = kept_.*column;
+    const std::span<const double> values = kept_.*column;
     if (values.empty()) continue;
-    (cycle.record.*column)
-        .assign(values.begin() + static_cast<std::ptrdiff_t>(begin_),
-                values.begin() + static_cast<std::ptrdiff_t>(turn + 1));
+    const auto own = values.subspan(begin_, turn + 1 - begin_);
+    (cycle.record.*column).assign(own.begin(), own.end());
   }
   cycles_ += together_;
   begin_ = turn;
