@@ -86,12 +86,6 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
             options.output.empty() ? "-" : options.output, console);
 }
 
-std::vector<std::string_view> SimulatedModels() {
-  std::vector<std::string_view> names = NamesOf(models::FrictionModels(), &FrictionModel::name);
-  names.push_back(models::kSimplifiedDahl);
-  return names;
-}
-
 void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   const OptionGroup group(command, "Excitation");
   const auto waveforms = models::WaveformNames();
@@ -135,7 +129,9 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
        "    --path path.csv --displacement \"[um]\""},
       &RunSimulate);
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddWord("--model", options.model, SimulatedModels(), "friction model");
+  std::vector<std::string_view> models = NamesOf(models::FrictionModels(), &FrictionModel::name);
+  models.push_back(models::kSimplifiedDahl);
+  plain.AddWord("--model", options.model, models, "friction model");
   AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   AddContactOptions(command, options.law.contact, /*has_friction=*/true);
   AddDriveOptions(command, options);

@@ -23,7 +23,6 @@
 namespace mindahl::request {
 
 using report::At;
-using report::Dump;
 using report::Json;
 
 namespace {
@@ -228,7 +227,7 @@ BatchAnswer AnswerOf(std::span<const BatchEntry> entries, const std::string& out
   const Json repeats = RepeatRows(table, has_several_laws);
   const std::string title = fmt::format(
       "{} of {} files fitted", std::ranges::count_if(entries, &BatchEntry::done), entries.size());
-  return {.rows = Dump(table),
+  return {.rows = report::Dump(table),
           .table = report::TableCsv(table),
           .json = report::Document("mindahl.batch/1",
                                    {{"output", output.empty() ? Json() : Json(output)},

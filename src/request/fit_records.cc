@@ -23,11 +23,9 @@
 namespace mindahl::request {
 
 using identification::AdequacyVerdict;
-using identification::Depth;
 using identification::FitOptions;
 using identification::FitResult;
 using identification::Identifiability;
-using identification::Interval;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
 using identification::TermSelection;
@@ -274,7 +272,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     AddTerm(name, records.front(), tried, step);
     KeepLaw(request, options, step);
     try {
-      found = identification::Fit(records, tried, Depth::kIntervals);
+      found = identification::Fit(records, tried, identification::Depth::kIntervals);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
     }
@@ -347,7 +345,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
   if (inputs.empty()) Refuse("a fit needs a record: give one");
   FitOptions options = MakeFitOptions(request);
-  if (const std::optional<Interval>& window = request.time_window) {
+  if (const auto& window = request.time_window) {
     for (RecordFile& input : inputs) io::KeepTimeWindow(input, window->lower, window->upper);
   }
   Validate(request.contact, inputs.size());
