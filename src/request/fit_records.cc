@@ -74,21 +74,20 @@ void RequireLoops(const std::vector<RecordFile>& inputs) {
 
 /// Cuts each record to its test, where that is asked for and nothing says which samples count.
 /// @param options  changed: a contact that was cycled before is steady
-/// @param left_out  gets the samples that are cut off
-void KeepTests(const FitRequest& request, std::vector<RecordFile>& records, FitOptions& options,
-               std::vector<report::LeftOut>& left_out) {
+/// @param input  changed: gets the samples that are cut off as left out
+void KeepTests(const FitRequest& request, FitOptions& options, report::ReportInput& input) {
   const loop::PreparationOptions& given = options.preparation;
   const bool is_chosen = given.load_window || given.samples || given.cycles;
   if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return;
   bool all_cycled = true;
-  for (RecordFile& record : records) {
+  for (RecordFile& record : input.records) {
     const loop::TestPart test = loop::FindTestPart(record.record);
     for (const loop::LeftOut& part : test.left_out) {
-      left_out.push_back({.file = record.name,
-                          .samples = part.last - part.first,
-                          .first = record.LineOf(part.first),
-                          .last = record.LineOf(part.last - 1),
-                          .why = std::string(part.reason)});
+      input.left_out.push_back({.file = record.name,
+                                .samples = part.last - part.first,
+                                .first = record.LineOf(part.first),
+                                .last = record.LineOf(part.last - 1),
+                                .why = std::string(part.reason)});
     }
     io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
@@ -355,47 +354,39 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
         "an angle: leave them out");
   }
   RequireLoops(inputs);
-  std::vector<std::string> notes;
-  for (const RecordFile& input : inputs) {
-    notes.insert(notes.end(), input.notes.begin(), input.notes.end());
+  report::ReportInput made{.records = std::move(inputs), .known = request.contact.known};
+  for (const RecordFile& input : made.records) {
+    made.notes.insert(made.notes.end(), input.notes.begin(), input.notes.end());
   }
-  std::vector<report::LeftOut> left_out;
-  KeepTests(request, inputs, options, left_out);
+  KeepTests(request, options, made);
   std::vector<Record> records;
-  records.reserve(inputs.size());
-  for (const RecordFile& input : inputs) records.push_back(input.record);
+  records.reserve(made.records.size());
+  for (const RecordFile& input : made.records) records.push_back(input.record);
 
-  std::vector<identification::ModelScore> compared;
-  if (request.compare) compared = identification::CompareModels(records, options);
+  if (request.compare) made.compared = identification::CompareModels(records, options);
   TermSelection asked = FitAsked(request, options, records);
-  std::optional<report::NextStep> next;
   FitResult found;
   if (!request.chooses_terms) {
-    next = FindNextStep(request, asked.options, records, !left_out.empty(), asked.fit, found);
+    made.next =
+        FindNextStep(request, asked.options, records, !made.left_out.empty(), asked.fit, found);
   }
-  const bool is_described = next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
+  const bool is_described = made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion = FindDisproportion(asked.fit);
   if (disproportion && !is_described) {
     asked.fit.findings.push_back(*disproportion);
     asked.fit.adequacy.causes.clear();
-    next.reset();
+    made.next.reset();
   }
-  contact::KnownContact known = request.contact.known;
-  if (!known.normal_load && asked.fit.normal_load) {
-    known.normal_load = *asked.fit.normal_load;
-  } else if (!known.normal_load && !records.front().normal_load.empty()) {
-    notes.emplace_back("the normal load is not positive in every file: it is not used");
+  std::optional<contact::UncertainValue>& load = made.known.normal_load;
+  if (!load && asked.fit.normal_load) {
+    load = *asked.fit.normal_load;
+  } else if (!load && !records.front().normal_load.empty()) {
+    made.notes.emplace_back("the normal load is not positive in every file: it is not used");
   }
-  return report::MakeReport(
-      {.records = std::move(inputs),
-       .fit = std::move(asked.fit),
-       .options = asked.options,
-       .known = known,
-       .left_out = std::move(left_out),
-       .notes = std::move(notes),
-       .compared = std::move(compared),
-       .terms = request.chooses_terms ? std::optional(std::move(asked)) : std::nullopt,
-       .next = std::move(next)});
+  made.fit = std::move(asked.fit);
+  made.options = asked.options;
+  if (request.chooses_terms) made.terms = std::move(asked);
+  return report::MakeReport(std::move(made));
 }
 
 }  // namespace mindahl::request
