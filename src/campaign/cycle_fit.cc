@@ -101,11 +101,8 @@ CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
 
 CycleFit CycleFitter::Fit(const Cycle& cycle) {
-  CycleFit fit;
-  fit.number = cycle.number;
-  fit.first_line = cycle.first_line;
-  fit.samples = cycle.record.size();
   const loop::Record& record = cycle.record;
+  CycleFit fit{.number = cycle.number, .first_line = cycle.first_line, .samples = record.size()};
   if (!record.time.empty()) fit["start_time"] = record.time.front();
   const std::vector<double>& given = fitter_.options().normal_loads;
   if (!given.empty()) {
@@ -133,11 +130,10 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
     FillParameter(*result, name, fit);
   }
   fit["rms"] = result->rms;
-  if (compliance_ && fit["sigma"] && !fit.HasFlag("sigma_open")) {
+  if (compliance_ && !fit.HasFlag("sigma_open")) {
     fit["contact_radius"] = *fit["sigma"] * *compliance_ / 8;
   }
-  const bool is_known = result->Find("slip_force")->is_known();
-  if (is_known && fit["slip_force"] && fit["normal_load"] && *fit["normal_load"] > 0) {
+  if (fit["normal_load"] > 0.0 && !fit.HasFlag("slip_force_open")) {
     fit["friction_coefficient"] = *fit["slip_force"] / *fit["normal_load"];
   }
   return fit;
@@ -172,10 +168,9 @@ CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   if (cells.size() != columns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
-  CycleFit fit;
-  fit.number = CellValue<std::size_t>(cells[0]);
-  fit.first_line = CellValue<std::size_t>(cells[1]);
-  fit.samples = CellValue<std::size_t>(cells[2]);
+  CycleFit fit{.number = CellValue<std::size_t>(cells[0]),
+               .first_line = CellValue<std::size_t>(cells[1]),
+               .samples = CellValue<std::size_t>(cells[2])};
   for (std::size_t k = 0; k < numbers; ++k) {
     if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
