@@ -145,7 +145,10 @@ class OptionGroup {
   }
 
  private:
-  CLI::Option* Grouped(CLI::Option* added, const std::string& type) const;
+  CLI::Option* Grouped(CLI::Option* added, const std::string& type) const {
+    added->group(name_);
+    return type.empty() ? added : added->type_name(type);
+  }
 
   CLI::App& command_;
   std::string name_;

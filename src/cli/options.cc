@@ -42,12 +42,6 @@ CLI::Validator InUnit(const std::string& unit) {
   return {convert, /*description=*/""};
 }
 
-CLI::Option* OptionGroup::Grouped(CLI::Option* added, const std::string& type) const {
-  added->group(name_);
-  if (!type.empty()) added->type_name(type);
-  return added;
-}
-
 CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column) {
   CLI::Option* const added =
       group.Add("--path", path, "CSV file with a displacement, any sequence", "FILE");

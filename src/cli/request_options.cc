@@ -1,6 +1,5 @@
 
 #include "cli/command.h"
-#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 

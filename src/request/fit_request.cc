@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/refuse.h"
-#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::request {

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/loop/record.h"
 
 namespace mindahl::report {
 
