@@ -62,7 +62,7 @@ class Writer {
   explicit Writer(const Report& report) : report_(report), fit_(report.fit) {}
 
   std::vector<Line> Answer() {
-    if (!report_.check.empty()) Add("check", report_.check, kBad);
+    Add("check", report_.check, kBad);
     AddColumns();
     AddReading();
     AddFriction();

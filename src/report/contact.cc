@@ -102,11 +102,9 @@ bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
          identification::Thresholds().off_plateau * std::abs(*facts.half_gap);
 }
 
-/// Returns the force at which the contact slips in one direction, Tc(1 ± A).
+/// Returns a quantity with the force at which the contact slips in one direction, Tc(1 ± A).
 /// @param sense  +1 towards positive displacement, −1 the other way
-ContactQuantity SlipForce(const FitResult& fit, std::string_view name, std::string_view symbol,
-                          double sense) {
-  ContactQuantity quantity{.name = name, .symbol = symbol, .unit = "N", .parameter = "slip_force"};
+ContactQuantity SlipForce(const FitResult& fit, ContactQuantity quantity, double sense) {
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
   const double force = slip_force.value * (1 + sense * asymmetry.value);
@@ -155,8 +153,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
       Fill(fit, *found, {&parameter, has_radius ? 0.0 : row.exponent}, {&parameter}, quantity);
     }
     if (quantity.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
-    quantities.push_back(SlipForce(fit, "slip_force_positive", "Tc up", 1));
-    quantities.push_back(SlipForce(fit, "slip_force_negative", "down", -1));
+    quantities.push_back(SlipForce(fit, {"slip_force_positive", "Tc up", "N", "slip_force"}, 1));
+    quantities.push_back(SlipForce(fit, {"slip_force_negative", "down", "N", "slip_force"}, -1));
   }
   ContactQuantity gross_slip{
       .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
