@@ -59,11 +59,6 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   return motion;
 }
 
-void AddNoise(std::vector<double>& values, double standard_deviation, Draws& draws) {
-  if (standard_deviation == 0) return;
-  for (double& value : values) value += standard_deviation * draws.Normal();
-}
-
 void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
@@ -77,8 +72,11 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   std::vector<double> force(motion.displacement.size());
   Prepare(approximation, law)({motion.displacement, motion.envelope}, force);
   Draws draws(options.seed);
-  AddNoise(force, options.force_noise, draws);
-  AddNoise(motion.displacement, options.displacement_noise, draws);
+  for (const auto& [values, noise] : {std::pair(&force, options.force_noise),
+                                      {&motion.displacement, options.displacement_noise}}) {
+    if (noise == 0) continue;
+    for (double& value : *values) value += noise * draws.Normal();
+  }
   Say("simulate: warning", contact::DoubtsAbout(options.law.contact.known), console);
   WriteText(io::CsvText({{"time [s]", motion.time},
                          {"displacement [m]", motion.displacement},
