@@ -23,12 +23,6 @@ void Append(const loop::RecordView& samples, std::span<const std::size_t> lines,
   to.lines.insert(to.lines.end(), lines.begin(), lines.end());
 }
 
-template <typename Value>
-void EraseFirst(std::vector<Value>& values, std::size_t count) {
-  if (values.empty()) return;
-  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
 }  // namespace
 
 CycleSplitter::CycleSplitter(double gate, std::size_t together)
@@ -43,8 +37,12 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   for (const double displacement : samples.displacement) {
     if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Complete(*turn, cycles);
   }
-  for (const auto column : loop::kRecordColumns) EraseFirst(kept_.*column, begin_);
-  EraseFirst(kept_.lines, begin_);
+  const auto end = static_cast<std::ptrdiff_t>(begin_);
+  const auto erase_before = [end](auto& values) {
+    if (!values.empty()) values.erase(values.begin(), values.begin() + end);
+  };
+  for (const auto column : loop::kRecordColumns) erase_before(kept_.*column);
+  erase_before(kept_.lines);
   dropped_ += std::exchange(begin_, 0);
   if (kept_.size() > kMostSamples) {
     throw InvalidArgument(
