@@ -33,7 +33,8 @@ void RunFit(const FitCommandOptions& options, Console& console) {
   }
   if (!failed && console.json_path == "-") Say("fit: note", report.notes, console);
   const auto detail = options.has_details ? report::Detail::kAll : report::Detail::kAnswer;
-  WriteAnswer(console, report::ToJson(report), failed ? "" : report::ToText(report, detail));
+  WriteAnswer(console, console.json_path.empty() ? "" : report::ToJson(report),
+              failed ? "" : report::ToText(report, detail));
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
   try {
-    found = identification::Fit(records, tried, Depth::kIntervals);
+    found = identification::Fit(records, tried, identification::Depth::kIntervals);
   } catch (const InvalidArgument&) {
     return std::nullopt;  // the options are those of a fit of the force
   }
