@@ -92,7 +92,8 @@ MINDAHL_INLINE Exponential Exponentiate(double x) {
   constexpr double kPerLog2 = 1.4426950408889634;
   constexpr double kRound = 6755399441055744.0;  // 1.5·2⁵²: adding it rounds to an integer
   constexpr double kLowest = -708.0;             // 2ⁿ is normal
-  const double bounded = x > kLowest ? x : kLowest;
+  // A condition would be left out of the lanes that slip, where what follows would overflow.
+  const double bounded = Choose(0 - static_cast<std::uint64_t>(x > kLowest), x, kLowest);
   const double shifted = bounded * kPerLog2 + kRound;
   const double n = shifted - kRound;
   const double r = (bounded - n * kLog2High) - n * kLog2Low;
