@@ -18,11 +18,12 @@ namespace {
 /// Takes a column for one that the others have where less of its norm is its own.
 constexpr double kOwnShare = 3e-5;
 
-/// Returns the θ at which a term has no effect; for an exponent that of a linear force.
+/// Returns the θ at which a term has no effect, which of an exponent is any: where it starts.
 double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   const Parameter& parameter = parameters[p];
-  if (p == kRig || parameter.is_exponent()) return parameter.upper;
-  return parameter.term->positive ? parameter.theta : parameter.ToTheta(0.0);
+  if (p == kRig) return parameter.upper;
+  const bool is_any = parameter.term->positive || parameter.is_exponent();
+  return is_any ? parameter.theta : parameter.ToTheta(0.0);
 }
 
 /// θ of a problem at the fit's solution, with terms that the fit does not have without effect.
@@ -97,31 +98,17 @@ bool Scorer::WasFree(const Problem& problem, std::size_t p) const {
   return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
 }
 
-/// Takes of an exponent that shapes columns which the fit does not have the value with which the
-/// choice gains most.
 std::optional<TermScore> Scorer::Score(const TermChoice& choice) {
   const Problem problem = ProblemOf(choice.AddedTo(options_));
-  std::vector<double> theta = ThetaOf(problem, fit_);
   std::vector<std::size_t> added;
-  std::optional<std::size_t> exponent;
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_other = parameter.term->of_column && parameter.column_name != choice.covariate;
-    if (is_other || WasFree(problem, p)) continue;
-    added.push_back(p);
-    if (parameter.is_exponent()) exponent = p;
+    if (!is_other && !WasFree(problem, p)) added.push_back(p);
   }
   if (added.empty()) return std::nullopt;
-  const bool is_tried = exponent && added.size() > 1;
-  std::optional<TermScore> best;
-  for (const double tried : {0.25, 0.5, 1.0}) {
-    if (is_tried) theta[*exponent] = tried;
-    const TermScore score =
-        ScoreColumns(problem, added, LinearizeAt(problem, theta, response_, added).jacobian);
-    if (!best || score.gain > best->gain) best = score;
-    if (!is_tried) break;
-  }
-  return best;
+  const Linearization at = LinearizeAt(problem, ThetaOf(problem, fit_), response_, added);
+  return ScoreColumns(problem, added, at.jacobian);
 }
 
 TermScore Scorer::ScoreColumns(const Problem& problem, std::span<const std::size_t> added,

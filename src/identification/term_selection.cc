@@ -191,16 +191,14 @@ class Selection {
   [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
   Model FitWith(const TermChoice& choice, bool from_here = true);
   FitResult FitTo(FitOptions options, Depth depth);
-  FitResult FitFrom(const Model& model);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] bool Gains(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(TermCandidate& candidate, Model model);
   bool Round();
-  [[nodiscard]] bool IsKept(const FitResult& law, const FitResult& fit) const;
   FitResult FitCommon(const FitResult& law);
   void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others);
-  FitResult FitLast(const FitResult& law);
+  FitResult FitLast(const FitResult& law, const Model& model);
 
   std::span<const RecordView> records_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
@@ -303,13 +301,6 @@ FitResult Selection::FitTo(FitOptions options, Depth depth) {
   }
 }
 
-/// Fits a model to the end, from its solution.
-FitResult Selection::FitFrom(const Model& model) {
-  FitOptions options = model.options;
-  StartFrom(model.fit, options);
-  return FitTo(std::move(options), Depth::kFull);
-}
-
 /// True if Tc leaves the half gap that was measured, and more than noise is left.
 bool Selection::Leaves(const FitResult& fit) const {
   return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
@@ -377,14 +368,20 @@ bool Selection::Round() {
   return false;
 }
 
-/// True unless a fit with terms loses Tc.
-bool Selection::IsKept(const FitResult& law, const FitResult& fit) const {
-  return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
+/// Fits a model to the end, from its solution.
+/// @param law  without terms, of Depth::kFull
+/// @returns a fit without parameters where Tc is lost
+FitResult Selection::FitLast(const FitResult& law, const Model& model) {
+  FitOptions options = model.options;
+  StartFrom(model.fit, options);
+  FitResult last = FitTo(std::move(options), Depth::kFull);
+  const bool is_kept =
+      IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio);
+  return is_kept ? last : FitResult();
 }
 
 /// Fits the law with all common terms, which begin without effect, and moves there unless there is
 /// an obstacle or the terms that were added one after the other leave hardly more.
-/// @param law  of Depth::kFull
 /// @returns a fit without parameters where it does not move
 FitResult Selection::FitCommon(const FitResult& law) {
   std::vector<std::string> common;
@@ -405,8 +402,8 @@ FitResult Selection::FitCommon(const FitResult& law) {
   const bool is_better = Gains(model.fit);
   const Model added = std::exchange(base_, law_);
   FitResult last;
-  if (is_better && ObstacleTo(model).empty()) last = FitFrom(model);
-  if (!IsKept(law, last)) {
+  if (is_better && ObstacleTo(model).empty()) last = FitLast(law, model);
+  if (!IsFitted(last)) {
     base_ = added;
     return {};
   }
@@ -416,17 +413,6 @@ FitResult Selection::FitCommon(const FitResult& law) {
   return last;
 }
 
-/// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
-/// Tc or leave more than is known to be left, else from where it is.
-/// @returns a fit without parameters where Tc is lost
-FitResult Selection::FitLast(const FitResult& law) {
-  FitResult last = FitTo(base_.options, Depth::kFull);
-  if (!IsKept(law, last) || last.rms > (1 + Limits().worthwhile_gain) * base_.fit.rms) {
-    last = FitFrom(base_);
-  }
-  return IsKept(law, last) ? last : FitResult();
-}
-
 TermSelection Selection::Run(FitResult law) {
   TermSelection result;
   result.options = base_.options;
@@ -434,7 +420,7 @@ TermSelection Selection::Run(FitResult law) {
   }
   FitResult last;
   if (!IsNearlyWhite(base_.fit, Limits())) last = FitCommon(law);
-  if (!IsFitted(last) && !added_.empty()) last = FitLast(law);
+  if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
   if (IsFitted(last)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
