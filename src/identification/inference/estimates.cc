@@ -220,6 +220,10 @@ Ends WithinBounds(const Parameter& parameter, Ends ends) {
     if (is_least && ends.lower) ends.lower = std::max(*ends.lower, bound);
     if (!is_least && ends.upper) ends.upper = std::min(*ends.upper, bound);
   }
+  if (parameter.term->id == TermId::kAsymmetry) {  // the search ends before slip forces of zero
+    if (ends.lower) ends.lower = std::max(*ends.lower, -1.0);
+    if (ends.upper) ends.upper = std::min(*ends.upper, 1.0);
+  }
   return ends;
 }
 
