@@ -43,7 +43,8 @@ std::optional<double> ReadClock(std::string text) {
   text.resize(std::min(text.find_first_of("Z+"), text.size()));  // a zone is that of all rows
   place = 0;
   std::sscanf(text.c_str(), "%2u:%2u:%n", &hour, &minute, &place);
-  const auto second = NumberIn<double>(std::string_view(text).substr(place));
+  const auto second =
+      NumberIn<double>(std::string_view(text).substr(static_cast<std::size_t>(place)));
   // 60 in a minute that leaps.
   const bool is_time = place > 0 && std::max(hour, minute) <= 60 && second >= 0 && second < 61;
   if (!is_time) return std::nullopt;

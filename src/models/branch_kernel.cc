@@ -196,15 +196,16 @@ MINDAHL_FOR_INSTRUCTION_SETS void DifferentiateBlock(const ScaledBranch& branch,
   const RunConstants run = ConstantsOf(branch, shape_exponent);
   const double force_start = branch.force;
   const double height = branch.height;
-  const double force_rate = start.force[kRate];
-  const double force_shape = start.force[kShape];
-  const double force_unloaded = start.force[kUnloaded];
-  const double height_rate = start.height[kRate];
-  const double height_shape = start.height[kShape];
-  const double height_unloaded = start.height[kUnloaded];
-  const double elastic_rate = height * start.log_rate[kRate];
-  const double elastic_shape = height * start.log_rate[kShape];
-  const double elastic_unloaded = height * start.log_rate[kUnloaded];
+  // By their data: clang leaves inline functions of Eigen out of what it builds for several sets.
+  const double force_rate = start.force.data()[kRate];
+  const double force_shape = start.force.data()[kShape];
+  const double force_unloaded = start.force.data()[kUnloaded];
+  const double height_rate = start.height.data()[kRate];
+  const double height_shape = start.height.data()[kShape];
+  const double height_unloaded = start.height.data()[kUnloaded];
+  const double elastic_rate = height * start.log_rate.data()[kRate];
+  const double elastic_shape = height * start.log_rate.data()[kShape];
+  const double elastic_unloaded = height * start.log_rate.data()[kUnloaded];
   const double slope_unloaded = start.origin_per_unloaded * height * branch.rate;
   ForEach(count, [&](std::size_t i) MINDAHL_INLINE_LAMBDA {
     const Sample sample = SampleAt(run, block.displacement[i]);
