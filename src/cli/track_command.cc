@@ -85,7 +85,7 @@ Json QuantityRows(const TrackedTest& test) {
   return quantities;
 }
 
-std::string ToJson(const TrackedTest& test) {
+std::string ToJson(const TrackedTest& test, const Json& quantities) {
   return report::Document(
       "mindahl.track/1", {{"input",
                            {{"files", test.files},
@@ -100,7 +100,7 @@ std::string ToJson(const TrackedTest& test) {
                           {"accumulated_energy", test.energy},
                           {"headline", campaign::Headline(test.evolutions)},
                           {"changes", campaign::ChangeStatements(test.evolutions)},
-                          {"quantities", QuantityRows(test)},
+                          {"quantities", quantities},
                           {"notes", test.notes}});
 }
 
@@ -129,11 +129,11 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   return facts;
 }
 
-std::string ToText(const TrackedTest& test) {
+std::string ToText(const TrackedTest& test, const Json& quantities) {
   std::string text =
       fmt::format("{}\n{}\n", campaign::Headline(test.evolutions), fmt::join(Facts(test), "\n"));
   if (!test.flags.empty()) text += '\n' + report::TableText(FlagRows(test));
-  text += '\n' + report::TableText(QuantityRows(test));
+  text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   if (changes.empty()) return text;
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
@@ -311,7 +311,7 @@ class TrackRun {
   const TrackCommandOptions& options_;
   TrackedTest test_;
   std::optional<campaign::Tracker> tracker_;
-  // What a resumed run keeps of the table on disk: its whole batches, if it has any.
+  // A resumed run keeps the complete batches of the table on disk; a new run keeps none.
   std::uintmax_t kept_bytes_ = 0;  // size of the header and of all batches
   std::string last_batch_;         // rows of the last one
   std::optional<io::AppendedFile> output_;
@@ -332,7 +332,8 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, ToPage(test, console.command_line));
   }
-  WriteAnswer(console, ToJson(test), ToText(test));
+  const Json quantities = QuantityRows(test);
+  WriteAnswer(console, ToJson(test, quantities), ToText(test, quantities));
 }
 
 }  // namespace

@@ -73,16 +73,18 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
   return p[0];
 }
 
-/// Returns where a motion that turns between its samples is between two of them: on the cubic
-/// through four. A second difference counts up to twice the other one, so that the motion runs
-/// straight beside a corner, and in the first and the last step.
+/// Returns where a motion is between two samples between which it does not turn: on their chord, or
+/// if it turns between samples on the cubic through four. A second difference counts up to twice
+/// the other one, so that the motion runs straight beside a corner, and in the first and the last
+/// step.
 /// @param next  the later of the two samples
-double PositionOnCubic(const ScaledRecord& motion, std::size_t next, double time) {
+double PositionBetween(const ScaledRecord& motion, std::size_t next, double time) {
   const std::vector<double>& x = motion.displacement;
   const std::vector<double>& t = motion.time;
   const auto velocity = [&](std::size_t k) { return (x[k] - x[k - 1]) / (t[k] - t[k - 1]); };
-  const double straight = x[next - 1] + velocity(next) * (time - t[next - 1]);
-  if (next < 2 || next + 1 >= x.size()) return straight;
+  const double straight =
+      std::lerp(x[next - 1], x[next], (time - t[next - 1]) / (t[next] - t[next - 1]));
+  if (!motion.turns_between || next < 2 || next + 1 >= x.size()) return straight;
   const double before = (velocity(next) - velocity(next - 1)) / (t[next] - t[next - 2]);
   const double after = (velocity(next + 1) - velocity(next)) / (t[next + 1] - t[next - 1]);
   const double most = 2 * std::min(std::abs(before), std::abs(after));
@@ -146,9 +148,7 @@ std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const m
       if (at < time) count = before;
       position = std::lerp(extreme, x[end], std::pow((time - at) / (time - t[end]), power));
     } else if (t[next] > t[next - 1]) {
-      position = motion.turns_between ? PositionOnCubic(motion, next, at)
-                                      : std::lerp(x[next - 1], x[next],
-                                                  (at - t[next - 1]) / (t[next] - t[next - 1]));
+      position = PositionBetween(motion, next, at);
     }
     turn_until(count);
     late.push_back(position);
