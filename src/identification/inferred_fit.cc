@@ -9,14 +9,12 @@
 #include "core/probability.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/diagnosis/discrepancy.h"
-#include "identification/diagnosis/residuals.h"
+#include "identification/diagnosis/hull.h"
 #include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/rivals.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solved_fit.h"
@@ -91,24 +89,6 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
   Append(result.findings, FindUndetermined(estimates));
 }
 
-/// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
-/// Branches whose α differ by 0.05 are no more than 1 % of Tc apart.
-void CoverSteps(const Attempt& attempt, FitResult& result) {
-  double step = 0.0;
-  for (const loop::PreparedRecord& record : attempt.prepared.records) {
-    step = std::max(step, loop::EncoderStep(record.record.force));
-  }
-  if (!(result.rms < step / 2)) return;
-  constexpr double kOfShape = 5.0;
-  const double share = step / 2 / result.PeakForce();
-  for (const std::size_t p : {kStiffness, kSlipForce, kShape}) {
-    ParameterEstimate& estimate = result.parameters[p];
-    const double half = p == kShape ? kOfShape * share : share * estimate.value;
-    Include(estimate,
-            {.lower = std::max(estimate.value - half, 0.0), .upper = estimate.value + half});
-  }
-}
-
 }  // namespace
 
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
@@ -130,7 +110,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     Append(result.findings, IncludeCompliantRig(fitted, options, solver, result.parameters));
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, {}, thresholds, result.parameters);
-  if (!problem.data->is_forced()) CoverSteps(attempt, result);
+  if (!problem.data->is_forced()) CoverSteps(attempt.prepared, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {

@@ -6,7 +6,6 @@
 
 #include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
-#include "identification/diagnosis/residuals.h"
 #include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
 #include "mindahl/identification/fit.h"

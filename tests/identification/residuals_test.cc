@@ -1,7 +1,6 @@
 
 
-#include "identification/diagnosis/residuals.h"
-
+#include "identification/inference/noise.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 

@@ -2,11 +2,10 @@
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/diagnosis/residuals.h"
+#include "identification/diagnosis/hull.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/rivals.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/models/steady_loop.h"

@@ -54,19 +54,6 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
   return !(distance(with) < distance(without));
 }
 
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
-  ParameterEstimate slip_force = result.parameters[kSlipForce];
-  const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
-                       slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
-  const bool is_forced = result.response == loop::Channel::kDisplacement;
-  // Half the distance between the medians of a few ends is known to about half its white noise.
-  const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
-  if (is_open && carried < slip_force.value && *slip_force.lower95 < carried) {
-    SetInterval(slip_force, {.lower = carried});
-  }
-  return slip_force;
-}
-
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
   constexpr const char* kName = "slip_force";
   // Below, nothing says that the model does not follow the record.

@@ -21,10 +21,6 @@ namespace mindahl::identification {
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 
-/// Returns Tc; where its interval is open above its lower limit is no less than the force that the
-/// contact is seen to carry.
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
-
 /// Returns the options of a second fit, with a slip force no larger than the largest force, where
 /// the loop slides over most of its stroke and a law that misses more than poor_misfit carries its
 /// slip force nowhere: the loop has carried it. Nothing where that is not so, where the other law

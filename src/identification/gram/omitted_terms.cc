@@ -149,28 +149,4 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   return test;
 }
 
-void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const OmittedTerm> causes, double quantile,
-                         std::span<ParameterEstimate> estimates) {
-  constexpr double kFirstOrder = 2.0;
-  const auto& reported = problem.parameters.reported();
-  const auto& free = problem.parameters.free();
-  for (std::size_t k = 0; k < reported.size(); ++k) {
-    const std::size_t p = reported[k];
-    const Parameter& parameter = problem.parameters[p];
-    const auto place = static_cast<std::size_t>(std::ranges::find(free, p) - free.begin());
-    const auto include = [&](double step, double half) {
-      const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
-      const auto [lower, upper] =
-          std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
-      Include(estimates[k], WithinBounds(parameter, {.lower = lower, .upper = upper}));
-    };
-    if (place >= test.step.size()) continue;
-    include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
-    for (const OmittedTerm& cause : causes) {
-      if (place < cause.step.size()) include(cause.step[place], 0.0);
-    }
-  }
-}
-
 }  // namespace mindahl::identification

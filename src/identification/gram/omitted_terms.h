@@ -27,11 +27,4 @@ struct AdequacyTest {
 AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
                           Response& response);
 
-/// Extends intervals to what they are with γ integrated out. The error counts twice: a step
-/// to first order goes a part of the way to a law of another form.
-/// @param causes  of which a single one may be what is omitted: intervals reach where each leads
-void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const OmittedTerm> causes, double quantile,
-                         std::span<ParameterEstimate> estimates);
-
 }  // namespace mindahl::identification

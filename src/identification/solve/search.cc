@@ -4,10 +4,262 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "core/extremes.h"
+
 namespace mindahl::identification {
+
+namespace {
+
+constexpr double kNoCost = std::numeric_limits<double>::infinity();
+
+/// Holds where loops of one α are looked at, closer where they differ. The first two rows cost
+/// square roots and divisions only.
+struct StartRow {
+  double shape;
+  std::vector<double> reaches;  // σX/Tc; of an imposed force, which stays below slip, T*/Tc
+};
+
+const std::vector<StartRow>& RowsOf(bool is_forced) {
+  static const std::vector<StartRow> rows = {
+      {1.0 / 3.0, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 90., 150.}},
+      {0.0, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
+      {1.0, {0.5, 1.5, 4.0, 12., 60., 120.}},
+      {2.5, {0.7, 3.0, 12., 60., 120.}}};
+  static const std::vector<StartRow> mobilised = {
+      {1.0 / 3.0, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
+      {0.0, {0.5, 0.99}},
+      {1.0, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
+      {2.5, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
+  return is_forced ? mobilised : rows;
+}
+
+/// A point of the plane, its cost and θ there.
+struct Look {
+  double cost = kNoCost;
+  double reach = 0.0;
+  double rig_ratio = 1.0;  // σ/k
+  std::vector<double> theta = {};
+};
+
+/// The cost over the plane of reach and α.
+class Plane {
+ public:
+  Plane(const Problem& problem, Solver& solver) : problem_(problem), solver_(solver) {}
+
+  /// Looks from θ of a look, whose α, origins and terms stay, and keeps it where it is better.
+  void KeepBetter(Look& best, Look look) {
+    // Without slip nothing depends on the reach: of equals the last, nearest to slip.
+    constexpr double kEqual = 1 + 1e-9;
+    At(look);
+    if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
+  }
+
+  /// The best looks of those that compete: of one α, or where α is held of one third of the
+  /// reaches; those that lead anywhere. Contacts are unloaded at their first samples.
+  std::vector<Look> Best() {
+    std::vector<double> theta;
+    for (const Parameter& of : problem_.parameters) {
+      theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
+    }
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      const std::size_t origin = problem_.parameters.PositionOfOrigin(r);
+      if (problem_.parameters[origin].fixed) continue;
+      theta[origin] = problem_.data->records[r].excitation().front();
+    }
+    constexpr std::size_t kThirds = 3;
+    constexpr double kNear = 4.0;
+    const Parameters& parameters = problem_.parameters;
+    const Parameter& shape = parameters[kShape];
+    const Parameter& rig = parameters[kRig];
+    const bool rig_is_open = !rig.absent && !rig.fixed && !rig.has_prior();
+    const std::vector<double> ratios =
+        rig_is_open ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
+    const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
+    std::vector<Look> best(rows.size());
+    const std::size_t count = shape.fixed ? 1 : rows.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::vector<double>& reaches = rows[k].reaches;
+      theta[kShape] =
+          shape.fixed ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
+      // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
+      // minimum, the others are looked at around it.
+      const double seen = k == 0 ? 0.0 : best[0].reach;
+      for (std::size_t i = 0; i < reaches.size(); ++i) {
+        if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
+        Look& group = best[shape.fixed ? i * kThirds / reaches.size() : k];
+        for (const double ratio : ratios) {
+          KeepBetter(group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
+        }
+      }
+    }
+    std::erase_if(best, [](const Look& look) { return !std::isfinite(look.cost); });
+    return best;
+  }
+
+  /// Tries a look with lags, with which a loop looks like one of another shape.
+  void LookForLag(Look& best) {
+    const Parameter& lag = problem_.parameters[RowOf(TermId::kLag)];
+    const Look without = best;
+    for (const double share : {-1.0, -0.6, -0.3, -0.15, -0.06, 0.06, 0.15, 0.3, 0.6, 1.0}) {
+      if (lag.fixed) return;
+      Look look = without;
+      look.theta[RowOf(TermId::kLag)] = share * (share < 0 ? -lag.lower : lag.upper);
+      KeepBetter(best, std::move(look));
+    }
+  }
+
+ private:
+  /// Writes the cost of a look, and what is found there into its θ.
+  void At(Look& look) {
+    const Parameters& parameters = problem_.parameters;
+    const Parameter& stiffness = parameters[kStiffness];
+    const Parameter& slip_force = parameters[kSlipForce];
+    const Parameter& rig = parameters[kRig];
+    const Parameter& exponent = parameters[kLoadExponent];
+    std::vector<double>& theta = look.theta;
+    const bool is_forced = problem_.data->is_forced();
+    if (!exponent.fixed) {
+      // Elements in parallel make it α.
+      theta[kLoadExponent] =
+          std::clamp(std::min(theta[kShape], 1.0), exponent.lower, exponent.upper);
+    }
+    // The ratios of a contact of Tc = 1, or where that is held of its own.
+    const double log_slip_force = slip_force.fixed ? slip_force.theta : 0.0;
+    theta[kSlipForce] = log_slip_force;
+    double log_stiffness = std::log(look.reach);
+    double log_rig = 0.0;
+    if (is_forced && !slip_force.fixed) {
+      theta[kSlipForce] = std::log(FarthestFrom(theta) / look.reach);
+    }
+    const bool rig_is_held = rig.fixed || rig.has_prior();
+    if (parameters.has_rig()) {
+      // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k.
+      const double compliance =
+          rig_is_held ? std::exp(-rig.theta) : look.rig_ratio / (look.reach * (1 + look.rig_ratio));
+      log_stiffness = -std::log(std::max(1 / look.reach - compliance, 0.1 / look.reach));
+      log_rig = -std::log(compliance);
+    }
+    if (!is_forced) {
+      theta[kStiffness] = log_stiffness + log_slip_force;
+      theta[kRig] = log_rig + log_slip_force;
+    }
+    look.cost = solver_.CostAt(theta);
+    if (!std::isfinite(look.cost)) return;
+    if (!is_forced) {
+      // Parameters that are held keep their values; the others follow from the ratios of the look.
+      if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
+      theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
+      theta[kRig] = rig_is_held ? rig.theta : log_rig + theta[kSlipForce];
+    }
+    for (const std::size_t p : parameters.free()) {
+      const Parameter& parameter = parameters[p];
+      const double inside = std::clamp(theta[p], parameter.lower, parameter.upper);
+      // Columns far beyond their bounds make a straight line of any loop.
+      if (parameter.term->is_linear && inside != theta[p]) look.cost = kNoCost;
+      theta[p] = inside;
+    }
+  }
+
+  /// Largest |excitation| from where the contacts are unloaded.
+  [[nodiscard]] double FarthestFrom(std::span<const double> theta) const {
+    double farthest = 0.0;
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      const auto [low, high] = ExtremesOf(problem_.data->records[r].excitation());
+      const double unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
+      farthest = std::max({farthest, high - unloaded, unloaded - low});
+    }
+    return farthest;
+  }
+
+  const Problem& problem_;
+  Solver& solver_;
+};
+
+/// Returns the options' own start, where it leaves nothing to be looked for.
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options) {
+  if (options.start.empty()) return std::nullopt;
+  StartingPoint start;
+  for (const Parameter& parameter : parameters) {
+    start.theta.push_back(parameter.theta);
+    const bool has_start = parameter.term->is_linear || parameter.term->start;
+    if (!parameter.fixed && !parameter.started_by_user && !has_start) return std::nullopt;
+  }
+  return start;
+}
+
+/// Returns the thinned records where they determine the law: they have the history of the whole.
+/// But a window or a fold may leave little of them, a column that wanders as it likes explains a
+/// few samples a stroke whatever the law is, and kinks are where samples are.
+const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
+                                    const ScaledRecords& thinned) {
+  constexpr std::size_t kEnough = 4;  // samples a parameter
+  const Parameters& parameters = problem.parameters;
+  const bool has_covariate = std::ranges::any_of(
+      parameters.free(), [&](std::size_t p) { return parameters[p].term->of_column; });
+  const bool is_enough = thinned.counted >= kEnough * parameters.free().size();
+  return is_enough && !has_covariate && !has_kinks ? thinned : *problem.data;
+}
+
+}  // namespace
+
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
+                    Solver& solver) {
+  const Problem& problem = candidate.problem;
+  std::vector<StartingPoint>& starts = candidate.starts;
+  starts.clear();
+  if (auto given = GivenStart(problem.parameters, options)) {
+    starts.push_back(std::move(*given));
+    return 0.0;
+  }
+  constexpr std::size_t kStartsAmongKinks = 4;
+  // The thinned record's minimum is a start only: no digits are asked of it.
+  constexpr SolverOptions kRough{.function_tolerance = 1e-2,
+                                 .parameter_tolerance = 1e-6,
+                                 .max_iterations = 30,
+                                 .is_rough = true};
+  // With α held at 0 the likelihood has a kink wherever a sample begins to slip, and minima next to
+  // each other.
+  const Parameter& shape = problem.parameters[kShape];
+  const bool has_kinks = shape.fixed && shape.theta == 0;
+  const ScaledRecords& data = RecordsOfLooks(problem, has_kinks, thinned);
+  const Problem thin{&data, problem.model, problem.states, problem.parameters};
+  solver.Bind(thin);
+  Plane plane(thin, solver);
+  std::vector<Look> looks = plane.Best();
+  for (Look& look : looks) plane.LookForLag(look);
+  std::ranges::stable_sort(looks, {}, &Look::cost);
+  // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
+  const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
+    return thin.parameters[p].term->presence == Presence::kOnDemand;
+  });
+  const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
+  Solution scratch;
+  for (Look& look : looks) {
+    const double least = looks.front().cost;
+    if (!bent && starts.size() >= most &&
+        !(starts.size() < 2 && look.cost < options.thresholds.hopeless * least)) {
+      break;
+    }
+    for (const std::size_t p : thin.parameters.free()) {
+      const Parameter& parameter = thin.parameters[p];
+      if (parameter.started_by_user) look.theta[p] = parameter.theta;
+    }
+    StartingPoint& start = starts.emplace_back(StartingPoint{std::move(look.theta), look.cost});
+    if (!options.start.empty()) continue;  // a start that is given is one
+    solver.Solve(start.theta, kRough, scratch);
+    if (!std::isfinite(scratch.sum_of_squares)) continue;
+    start.theta = scratch.theta;
+    start.cost = scratch.sum_of_squares;
+  }
+  std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
+  if (starts.size() > most) starts.resize(most);
+  return starts.empty() ? kNoCost : starts.front().cost;
+}
 
 SolverOptions SolverOptionsOf(const FitOptions& options) {
   return {.max_iterations = options.max_iterations};

@@ -1,6 +1,5 @@
-#include "identification/diagnosis/discrepancy.h"
-
 #include "core/probability.h"
+#include "identification/diagnosis/hull.h"
 #include "identification/inference/estimates.h"
 #include "identification/stages.h"
 #include "recovery/recovered.h"

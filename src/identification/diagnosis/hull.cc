@@ -1,0 +1,240 @@
+#include "identification/diagnosis/hull.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/probability.h"
+#include "identification/diagnosis/adequacy.h"
+#include "identification/solve/search.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+
+namespace mindahl::identification {
+
+using contact::kMindlinShapeExponent;
+
+void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
+                const Thresholds& thresholds, ParameterEstimates& parameters) {
+  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.stiffness) return;
+  Include(parameters[kShape], {.lower = law.shape_exponent, .upper = law.shape_exponent});
+  for (const auto& [p, value] :
+       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
+    ParameterEstimate& estimate = parameters[p];
+    if (estimate.lower95 && estimate.upper95) {
+      IncludeRatios(estimate, std::array{value / estimate.value});
+    } else {
+      Include(estimate, {.lower = value, .upper = value});
+    }
+  }
+}
+
+std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
+                                           Solver& solver, ParameterEstimates& parameters) {
+  const Problem& problem = fitted.problem();
+  const Solution& best = fitted.solution();
+  const Thresholds& thresholds = options.thresholds;
+  const ParameterEstimate& shape = parameters[kShape];
+  // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
+  // is.
+  if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
+      problem.parameters[kShape].has_prior() || shape.status == ParameterStatus::kFixed ||
+      !shape.upper95 || !(*shape.upper95 < kMindlinShapeExponent) ||
+      !(kMindlinShapeExponent - shape.value > thresholds.shape_effect)) {
+    return std::nullopt;
+  }
+  constexpr double kStiffer = 0.1;  // of the compliance is the contact's
+  FitOptions with_rig = options;
+  with_rig.terms.emplace_back("rig_stiffness");
+  with_rig.fixed["alpha"] = kMindlinShapeExponent;
+  with_rig.start.clear();
+  Candidate sprung(*problem.data, with_rig, problem.states);
+  // A rig as stiff as the fitted contact, before one ten times stiffer, with the terms that it has.
+  std::vector<double> beside = best.theta;
+  beside[kRig] = best.theta[kStiffness] + std::log(1 / (1 - kStiffer));
+  beside[kStiffness] -= std::log(kStiffer);
+  beside[kShape] = kMindlinShapeExponent;
+  sprung.starts.push_back({.theta = std::move(beside)});
+  Descend(sprung, with_rig, solver);
+  const Solution& solution = sprung.solution;
+  // Both have as many parameters: ΔAICc is 2 ln Λ.
+  const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);
+  if (!solution.converged || !(loss < thresholds.indistinguishable)) return std::nullopt;
+  const models::SeriesSpring rig = sprung.problem.parameters.RigAt(solution.theta);
+  IncludeLaw(sprung.problem.parameters.LawAt(solution.theta), rig, thresholds, parameters);
+  for (ParameterEstimate& estimate : parameters) {
+    const double exponent = sprung.problem.parameters.LoadExponentAt(solution.theta);
+    if (estimate.name == "load_exponent") Include(estimate, {exponent, exponent});
+  }
+  return Finding{.code = "shape_or_rig", .numbers = {{"rig_stiffness", rig.stiffness}}};
+}
+
+void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {
+  double step = 0.0;
+  for (const loop::PreparedRecord& record : records.records) {
+    step = std::max(step, loop::EncoderStep(record.record.force));
+  }
+  if (!(result.rms < step / 2)) return;
+  constexpr double kOfShape = 5.0;
+  const double share = step / 2 / result.PeakForce();
+  for (const std::size_t p : {kStiffness, kSlipForce, kShape}) {
+    ParameterEstimate& estimate = result.parameters[p];
+    const double half = p == kShape ? kOfShape * share : share * estimate.value;
+    Include(estimate,
+            {.lower = std::max(estimate.value - half, 0.0), .upper = estimate.value + half});
+  }
+}
+
+void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                         std::span<const OmittedTerm> causes, double quantile,
+                         std::span<ParameterEstimate> estimates) {
+  constexpr double kFirstOrder = 2.0;
+  const auto& reported = problem.parameters.reported();
+  const auto& free = problem.parameters.free();
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    const std::size_t p = reported[k];
+    const Parameter& parameter = problem.parameters[p];
+    const auto place = static_cast<std::size_t>(std::ranges::find(free, p) - free.begin());
+    const auto include = [&](double step, double half) {
+      const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
+      const auto [lower, upper] =
+          std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
+      Include(estimates[k], WithinBounds(parameter, {.lower = lower, .upper = upper}));
+    };
+    if (place >= test.step.size()) continue;
+    include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
+    for (const OmittedTerm& cause : causes) {
+      if (place < cause.step.size()) include(cause.step[place], 0.0);
+    }
+  }
+}
+
+namespace {
+
+/// Half the width of the interval in which a further cycle of the same loop has its half gap:
+/// Student's for so few cycles.
+double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
+  const auto cycles = static_cast<double>(facts.steady_cycles);
+  if (!facts.half_gap_standard_deviation || cycles < 3) return 0.0;
+  return StudentQuantile(cycles - 1, confidence) * *facts.half_gap_standard_deviation *
+         std::sqrt(1 + 1 / cycles);
+}
+
+/// The stiffness of the record after its reversals over that of the model: slopes of least squares,
+/// each stroke with an intercept of its own, where the model's force has changed by less than a
+/// fraction of what it changes by in the stroke.
+/// @returns nothing where the strokes have fewer than two samples there
+std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresholds& thresholds,
+                                       double window) {
+  constexpr double kFewestOfAStroke = 2;  // samples, for a chord
+  const ScaledRecords& data = *estimates.problem().data;
+  double measured = 0.0;
+  double model = 0.0;
+  double strokes = 0.0;
+  double samples = 0.0;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    const auto force_of_model = [&](std::size_t i) {
+      return record.force[i] +
+             estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
+    };
+    for (const Stroke& stroke : MainStrokes(record, thresholds)) {
+      std::vector<std::size_t> counted;
+      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+        if (record.root_weight[i] > 0) counted.push_back(i);
+      }
+      if (counted.empty()) continue;
+      const double first = force_of_model(counted.front());
+      const double limit = window * std::abs(force_of_model(counted.back()) - first);
+      std::vector<double> near;  // displacement, force and the model's of a sample
+      for (const std::size_t i : counted) {
+        const double force = force_of_model(i);
+        if (std::abs(force - first) > limit) break;
+        // The motion turned anywhere about its outermost sample.
+        if (i == stroke.begin) continue;
+        near.insert(near.end(), {record.displacement[i], record.force[i], force});
+      }
+      ++strokes;
+      if (near.empty()) continue;
+      const Eigen::Map<const Eigen::Array3Xd> at(near.data(), 3, std::ssize(near) / 3);
+      const Eigen::ArrayXd places = at.row(0).transpose() - at.row(0).mean();
+      measured += (places * at.row(1).transpose()).sum();
+      model += (places * at.row(2).transpose()).sum();
+      samples += static_cast<double>(at.cols());
+    }
+    begin += record.size();
+  }
+  const double ratio = measured / model;  // of slopes at the same points
+  const bool is_known = samples >= kFewestOfAStroke * strokes && ratio > 0 && std::isfinite(ratio);
+  return is_known ? std::optional(ratio) : std::nullopt;
+}
+
+/// The same over an eighth, a quarter and a half of the change, and at the reversal itself: by the
+/// parabola through these, and as much again within the narrowest as is seen of it.
+std::vector<double> RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresholds) {
+  std::vector<double> ratios;
+  if (estimates.problem().data->is_forced()) return ratios;
+  for (const double window : {0.125, 0.25, 0.5}) {
+    const std::optional<double> ratio = RatioOfStiffness(estimates, thresholds, window);
+    if (ratio) ratios.push_back(*ratio);
+  }
+  if (ratios.empty()) return ratios;
+  const double parabola =
+      ratios.size() > 2 ? 8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3 : 0.0;
+  ratios.push_back(ratios[0] * ratios[0]);
+  if (parabola > 0) ratios.push_back(parabola);
+  return ratios;
+}
+
+}  // namespace
+
+ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
+                                    const FitResult& result) {
+  ParameterEstimates parameters = result.parameters;
+  ParameterEstimate& slip_force = parameters[kSlipForce];
+  IncludeRatios(parameters[kStiffness], RatiosOfStiffness(fitted, thresholds));
+  for (ParameterEstimate& estimate : parameters) {
+    const bool is_closed = estimate.lower95 && estimate.upper95;
+    estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed &&
+                                    result.adequacy.use != Use::kNone;
+  }
+  const loop::LoopFacts& facts = result.WidestRecord().facts;
+  const double load_ratio = result.WidestRecord().load_ratio;
+  const std::optional<double> half_gap = result.MeasuredHalfGap();
+  const bool is_free = slip_force.status != ParameterStatus::kFixed;
+  const bool has_slipped = loop::Slides(facts) || loop::ReachesSlip(facts);
+  if (!is_free || !half_gap || !has_slipped) return parameters;
+
+  const double margin =
+      std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, result.adequacy.misfit);
+  // The value itself is no better known than the gap.
+  const double least = std::min(*half_gap, slip_force.value) - margin;
+  const double most =
+      std::max({*half_gap, facts.peak_force / load_ratio, slip_force.value}) + margin;
+  const auto [lower, upper] =
+      std::minmax({slip_force.value, *half_gap - margin, *half_gap + margin,
+                   std::clamp(slip_force.lower95.value_or(0.0), least, most),
+                   std::clamp(slip_force.upper95.value_or(most), least, most)});
+  SetInterval(slip_force, {.lower = std::max(lower, 0.0), .upper = upper});
+  slip_force.includes_discrepancy = true;
+  return parameters;
+}
+
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
+  ParameterEstimate slip_force = result.parameters[kSlipForce];
+  const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
+                       slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
+  const bool is_forced = result.response == loop::Channel::kDisplacement;
+  // Half the distance between the medians of a few ends is known to about half its white noise.
+  const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
+  if (is_open && carried < slip_force.value && *slip_force.lower95 < carried) {
+    SetInterval(slip_force, {.lower = carried});
+  }
+  return slip_force;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "identification/gram/omitted_terms.h"
+#include "identification/inference/estimates.h"
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/response.h"
+
+/// What extends the interval of a parameter beyond that of noise alone: other laws that the record
+/// does not exclude, and what the model misses. Such an error does not average out, however many
+/// samples there are, and its size is that of the record.
+namespace mindahl::identification {
+
+/// Includes a law that the record does not exclude in the intervals of σ, α and Tc: of σ and Tc the
+/// whole interval times the ratio of the values, of one that is open the value. One far stiffer
+/// than its rig is Jenkins' element, the same curve with no other α: it is left out.
+void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
+                const Thresholds& thresholds, ParameterEstimates& parameters);
+
+/// Includes Mindlin's contact in a compliant rig in the intervals of σ, α and Tc, where the record
+/// does not distinguish it: a rig makes a loop more angular, as a smaller α does, so that where
+/// Mindlin's exponent lies above the interval of α for a rigid rig a compliant one may restore it.
+/// @param parameters  intervals so far
+/// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
+std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
+                                           Solver& solver, ParameterEstimates& parameters);
+
+/// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
+/// Branches whose α differ by 0.05 are no more than 1 % of Tc apart.
+void CoverSteps(const loop::PreparedRecords& records, FitResult& result);
+
+/// Extends intervals to what they are with γ integrated out. The error counts twice: a step
+/// to first order goes a part of the way to a law of another form.
+/// @param causes  of which a single one may be what is omitted: intervals reach where each leads
+void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                         std::span<const OmittedTerm> causes, double quantile,
+                         std::span<ParameterEstimate> estimates);
+
+/// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
+/// where the measured loop slides over most of its stroke or reaches slip: it becomes the union of
+/// the fitted value, the measured half gap with its margin, and the interval so far, of noise and
+/// of the terms that the model omits, as far as that lies between the least and the largest of half
+/// gap, T* and the value, each with the margin. A loop that slides has carried its slip force: no
+/// less than the gap in the middle of the stroke, no more than its largest force. The margin is the
+/// scatter of the cycles' half gaps and the force that the model misses. Other intervals are left
+/// as they are; those of a fit that is of use count as including what the model misses.
+ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
+                                    const FitResult& result);
+
+/// Returns Tc; where its interval is open above its lower limit is no less than the force that the
+/// contact is seen to carry.
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
+
+}  // namespace mindahl::identification
