@@ -100,10 +100,9 @@ Cell ReadCell(std::string_view text, char decimal_mark) {
   if (stop == end && (!is_beyond || is_small)) {
     return {.kind = Cell::Kind::kNumber, .value = is_small ? 0.0 : value};
   }
-  if (const std::optional<double> seconds = ReadClock(plain)) {
-    return {.kind = Cell::Kind::kNumber, .value = *seconds, .is_clock = true};
-  }
-  const bool is_date = PartsOf(text, '-').size() == 3 || PartsOf(text, '/').size() == 3;
+  const auto seconds = plain.find(':') != plain.npos ? ReadClock(plain) : std::nullopt;
+  if (seconds) return {.kind = Cell::Kind::kNumber, .value = *seconds, .is_clock = true};
+  const bool is_date = std::ranges::count(text, '-') == 2 || std::ranges::count(text, '/') == 2;
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
