@@ -125,14 +125,14 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     return record.initial_state == InitialState::kSteady;
   });
   const bool is_open = options.initial_states.empty();
-  const bool is_one_curve = is_steady && HasOneAmplitude(records, data, options.thresholds);
+  const bool is_one_amplitude = HasOneAmplitude(records, data, options.thresholds);
+  const bool is_one_curve = is_steady && is_one_amplitude;
+  const auto starts_inside = [&](const ScaledRecord& record) {  // the range of its strokes
+    const auto [low, high] = std::ranges::minmax(record.excitation());
+    const double start = record.excitation().front();
+    return std::min(start - low, high - start) > options.thresholds.starts_inside * (high - low);
+  };
   if (is_one_curve) {
-    // One that starts inside the range of its strokes.
-    const auto starts_inside = [&](const ScaledRecord& record) {
-      const auto [low, high] = std::ranges::minmax(record.excitation());
-      const double start = record.excitation().front();
-      return std::min(start - low, high - start) > options.thresholds.starts_inside * (high - low);
-    };
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_states = {InitialState::kVirgin};
   }
@@ -159,12 +159,20 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
-  // need turns that are not recorded. That alone does not decide for it.
+  // need turns that are not recorded. That alone does not decide for it, unless it leaves but noise
+  // and Masing's more.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
-  if (!past.empty()) {
-    if (HasOneAmplitude(records, data, options.thresholds)) return choice;
+  if (!past.empty() && is_one_amplitude) {
+    const auto leaves_more = [&](const FitResult& of) {
+      return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
+    };
+    const bool is_told = std::ranges::all_of(data.records, starts_inside) &&
+                         leaves_more(is_masing ? fit : *other) &&
+                         !leaves_more(is_masing ? *other : fit);
+    if (!is_told) return choice;
+  } else if (!past.empty()) {
     FitOptions same = options;
     StartFrom(fit, same);
     const auto without = FitWithout(past, records, std::move(same));

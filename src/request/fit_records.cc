@@ -254,7 +254,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
-  if (!fit.converged || !(before > kLeastMisfit) ||
+  const bool is_other_law = fit.law_choice && fit.law_choice->prefers_alternative();
+  if (!fit.converged || !(before > kLeastMisfit) || is_other_law ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
       !options.terms.empty() || !options.covariates.empty()) {

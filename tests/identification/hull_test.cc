@@ -1,5 +1,6 @@
-#include "core/probability.h"
 #include "identification/diagnosis/hull.h"
+
+#include "core/probability.h"
 #include "identification/inference/estimates.h"
 #include "identification/stages.h"
 #include "recovery/recovered.h"

@@ -125,5 +125,20 @@ TEST(ResidualStructure, FractionIsVarianceThatRepeats) {
   }
 }
 
+TEST(ResidualStructure, WhatIsMissedBesideTheMainStrokesIsNoNoise) {
+  // The way in, a quarter cycle of 50 samples and the turn, misses 10; the others have noise of 1,
+  // known to √(2/750) = 5 %.
+  constexpr double kShareError = 0.2;
+  const History displacement = Cycling(Wave::kSine, 1.0, 4.0, 200);
+  Generator generator(7);
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    residual.push_back(i < 50 ? 10.0 : Normal(generator));
+  }
+  const auto samples = static_cast<double>(residual.size());
+  const double all = (50 * 100.0 + samples - 50) / samples;
+  EXPECT_NEAR(StructureOf(displacement, residual).noise_share * all, 1.0, kShareError);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::residuals_test

@@ -37,7 +37,7 @@ double NoiseVariance(const FitResult& result) {
   bool comes_back = false;
   for (const RecordFit& record : result.records) {
     const ResidualStructure& structure = record.structure;
-    share = std::min(share, 1 - structure.repeatable_share);
+    share = std::min(share, structure.noise_share);
     const auto& [rising, falling] = structure.strokes;
     comes_back = comes_back || (rising > 1 && falling > 1);
   }

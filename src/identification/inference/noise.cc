@@ -111,11 +111,17 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   }
   const double mean_square = squares / samples;
   if (parts == 0 || !(between > 0)) return structure;
+  double all_squares = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.counts[i] != 0) all_squares += residual[i] * residual[i];
+  }
   constexpr double kRounding = 1e-15;  // of what repeats to the last digit
   const double ratio = between / parts / (std::max(within, kRounding * between) / degrees_within);
   if (PValueOfF(ratio, parts, degrees_within) <= thresholds.rare_chance) {
     structure.repeatable_share = std::clamp(systematic / parts / mean_square, 0.0, 1.0);
   }
+  structure.noise_share = (1 - structure.repeatable_share) * mean_square *
+                          static_cast<double>(CountedSamplesOf(record)) / all_squares;
   return structure;
 }
 
