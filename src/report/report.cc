@@ -109,22 +109,39 @@ std::string ImpossibleContact(const Report& report) {
 }
 
 /// Returns a question where half gaps of several files differ as loads would make them, and one law
-/// does not describe them: in partial slip they differ by the amplitudes too.
+/// does not describe them: in partial slip they differ by the amplitudes too. Of a load series half
+/// gaps over the loads differ by what the loops are less full, else the loads are others.
 std::string DifferentLoads(const Report& report) {
-  if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
-  if (report.fit.adequacy.verdict != AdequacyVerdict::kInadequate) return "";
+  constexpr double kAsFull = 1.2;  // energy ratio over energy ratio
+  const FitResult& fit = report.fit;
+  const bool is_series = fit.is_load_series();
+  const AdequacyVerdict verdict = fit.adequacy.verdict;
+  if (fit.records.size() < 2 || (fit.normal_load && !is_series) ||
+      verdict == AdequacyVerdict::kAdequate ||
+      (!is_series && verdict != AdequacyVerdict::kInadequate)) {
+    return "";
+  }
   std::vector<double> half_gaps;
-  half_gaps.reserve(report.fit.records.size());
-  for (const RecordFit& record : report.fit.records) {
+  std::vector<double> fullness;
+  for (const RecordFit& record : fit.records) {
     if (!record.facts.half_gap) return "";
-    half_gaps.push_back(std::abs(*record.facts.half_gap));
+    half_gaps.push_back(std::abs(*record.facts.half_gap) / (is_series ? *record.normal_load : 1.0));
+    fullness.push_back(record.facts.energy_ratio);
   }
   const auto [least, greatest] = std::ranges::minmax(half_gaps);
   if (!(greatest > report.options.thresholds.other_test * least)) return "";
-  const std::string_view unit = report.units.force;
-  return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",
-                     Quantity(least, unit, 3), Quantity(greatest, unit, 3),
-                     report.is_torsional() ? "" : "different loads? --normal-load N1,N2,…; ");
+  if (!is_series) {
+    const std::string_view unit = report.units.force;
+    return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",
+                       Quantity(least, unit, 3), Quantity(greatest, unit, 3),
+                       report.is_torsional() ? "" : "different loads? --normal-load N1,N2,…; ");
+  }
+  const auto [emptiest, fullest] = std::ranges::minmax(fullness);
+  if (!(emptiest > 0 && fullest < kAsFull * emptiest)) return "";
+  return fmt::format(
+      "half gaps over the loads from {:.3g} to {:.3g} of loops that are as full: loads in another "
+      "order than the files?",
+      least, greatest);
 }
 
 std::string WhatToCheck(const Report& report) {

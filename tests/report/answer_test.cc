@@ -239,6 +239,25 @@ TEST(Answer, AsksForTheLoadsOfFilesWhoseHalfGapsDiffer) {
   EXPECT_EQ(LineOf(input, "check"), "");
 }
 
+TEST(Answer, AsksForTheOrderOfLoadsUnderWhichLoopsAsFullHaveOtherGaps) {
+  ReportInput input =
+      testing::MadeInput({testing::MadeRecord(2e-6), testing::MadeRecord(2e-6)}, 2e-6);
+  input.fit.records[0].facts = Facts(10.0);
+  input.fit.records[1].facts = Facts(60.0);
+  for (auto& record : input.fit.records) record.facts.energy_ratio = 0.4;
+  input.fit.records[0].normal_load = 120.0;
+  input.fit.records[1].normal_load = 20.0;
+  input.fit.normal_load = 70.0;
+  input.fit.parameters.emplace_back().name = "load_exponent";
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kDoubtful;
+  EXPECT_THAT(LineOf(input, "check"), HasSubstr("half gaps over the loads from 0.0833 to 3"));
+  input.fit.records[1].facts.energy_ratio = 0.6;
+  EXPECT_EQ(LineOf(input, "check"), "") << "of loops that slip by less and by more";
+  input.fit.records[1].facts.energy_ratio = 0.4;
+  input.fit.records[1].normal_load = 600.0;
+  EXPECT_EQ(LineOf(input, "check"), "") << "in proportion to the loads, within a factor of two";
+}
+
 TEST(Answer, NamesAModulusThatNoSolidHasBeforeTheUnitOfTheDisplacement) {
   ReportInput input = MadeInput();
   input.known = kSphereOnPlane;
