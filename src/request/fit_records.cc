@@ -108,11 +108,10 @@ bool WithdrawPreference(FitResult& fit) {
   return true;
 }
 
-/// Makes the requested fit; with `--model auto` by Masing's law or, where the record supports it,
-/// by Dahl's own. Terms are chosen for the law that is better without them.
-TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
+/// Fits by the model of the options or, where that is to be chosen, by Masing's law or, where the
+/// record supports it, by Dahl's own.
+TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
                        std::span<const Record> records) {
-  const bool chooses_law = request.fit.model == nullptr;
   TermSelection asked;
   asked.options = options;
   asked.fit = identification::Fit(records, options);
@@ -131,6 +130,23 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
     // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
   }
+  return asked;
+}
+
+/// Makes the requested fit. With `--model auto` the law is chosen without terms that are chosen,
+/// and without an asymmetry, beside which laws are not compared.
+TermSelection FitAsked(const FitRequest& request, FitOptions options,
+                       std::span<const Record> records) {
+  const bool chooses_law = request.fit.model == nullptr;
+  FitOptions symmetric = options;
+  std::erase(symmetric.terms, "asymmetry");
+  std::size_t of_asymmetry = options.terms.size() - symmetric.terms.size();
+  const auto erase = [&](auto& values) { of_asymmetry += values.erase("asymmetry"); };
+  erase(symmetric.fixed), erase(symmetric.priors), erase(symmetric.start), erase(symmetric.bounds);
+  if (chooses_law && of_asymmetry > 0) {
+    options.model = FitByLaw(true, symmetric, records).options.model;
+  }
+  TermSelection asked = FitByLaw(chooses_law, options, records);
   if (!request.chooses_terms) return asked;
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   asked = identification::SelectTerms(views, asked.options, std::move(asked.fit));

@@ -64,6 +64,23 @@ report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitReq
   return FitRecords(request, std::move(files));
 }
 
+/// A loop of Dahl's own law has no asymmetry by its own law, and one of 0.7 by Masing's.
+TEST(FitRecords, ChoosesTheLawWithoutAnAsymmetryBesideWhichLawsAreNotCompared) {
+  io::RecordFile file;
+  for (const double sine : testing::Sine(4, 120)) file.record.displacement.push_back(6e-7 * sine);
+  file.record.force =
+      testing::Respond(testing::Model("dahl"), {4.8e7, 1.5, 15.0}, file.record.displacement);
+  Generator generator(4);
+  for (double& force : file.record.force) force += 0.04 * testing::Normal(generator);
+  for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
+  FitRequest request;
+  request.fit.terms = {"asymmetry"};
+  const identification::FitResult fit = FitRecords(request, {file}).fit;
+  EXPECT_EQ(fit.model->name, "dahl");
+  EXPECT_EQ(fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_NEAR(fit.Find("asymmetry")->value, 0.0, 0.01);
+}
+
 TEST(NextStep, IsNoneWhereACauseWithoutATermSeemsToDescribeTheRecordAsWell) {
   const auto curved = [](double x) { return x + 0.02 * x * x / 2e-6; };
   const report::Report made = FitLoops({{2e7, 1.0 / 3, 60.0}}, {}, curved);
