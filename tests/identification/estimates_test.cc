@@ -183,17 +183,6 @@ TEST(Intervals, AreTheUnionOfTheirParts) {
   EXPECT_FALSE(estimate.lower95 || estimate.upper95);
 }
 
-TEST(Intervals, EndWhereTheTheoryDoesAndNotWhereTheSearchDoes) {
-  const Term* const term = FindTerm("asymmetry");
-  const Parameter asymmetry{.term = term, .lower = term->lowest, .upper = term->highest};
-  const Ends wide = WithinBounds(asymmetry, {.lower = -1.7, .upper = 1.1});
-  EXPECT_EQ(wide.lower, -1.0);
-  EXPECT_EQ(wide.upper, 1.0);
-  const Ends within = WithinBounds(asymmetry, {.lower = -0.9, .upper = {}});
-  EXPECT_EQ(within.lower, -0.9);
-  EXPECT_FALSE(within.upper);
-}
-
 // ---
 // The confidence of intervals is one setting: what it changes, and whether it is kept.
 

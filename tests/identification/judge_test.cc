@@ -237,10 +237,11 @@ TEST(Grade, GapIsThatAtTheMeanLoad) {
   EXPECT_EQ(*fit.MeasuredHalfGap(), 4.0);
 }
 
-TEST(Intervals, StayWithinBoundsOfTheTheoryAndOfTheUser) {
+TEST(Intervals, StayWithinBoundsOfTheTheoryAndOfTheUserAndAreOpenBeyondThoseOfTheSearch) {
   Parameter shape{.term = &TermOf(TermId::kAlpha), .lower = 0.0, .upper = 20.0};
   EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).lower, 0.0);
-  EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).upper, 30.0) << "the search's own";
+  EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 19.0}).upper, 19.0);
+  EXPECT_FALSE(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).upper) << "the search's own";
   shape.bounded_by_user = true;
   EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).upper, 20.0);
   shape.scale = -1.0;  // the value falls where θ grows

@@ -133,9 +133,9 @@ TEST(Parameters, EndsOfTheTheorysOwnAreNoSearchLimits) {
     bool below;
     bool above;
   };
-  // Jenkins' α, a logarithm of the speed, no slip force at rest, no gap, no drag; rigs have both.
+  // Jenkins' α, the speed or its logarithm, no slip force at rest, no gap, no drag; rigs have both.
   for (const auto& [term, below, above] :
-       {Case{"alpha", false, true}, Case{"slip_speed_exponent", false, true},
+       {Case{"alpha", false, true}, Case{"slip_speed_exponent", false, false},
         Case{"slip_speed", true, false}, Case{"backlash", false, true},
         Case{"drag_fraction", false, false}, Case{"rig_stiffness", true, true}}) {
     EXPECT_EQ(is_limit(term, BoundSide::kLower), below) << term;

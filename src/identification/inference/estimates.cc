@@ -214,15 +214,11 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 Ends WithinBounds(const Parameter& parameter, Ends ends) {
   for (const auto& [side, theta] : {std::pair(BoundSide::kLower, parameter.lower),
                                     std::pair(BoundSide::kUpper, parameter.upper)}) {
-    if (IsSearchLimit(parameter, side)) continue;
     const double bound = parameter.ToValue(theta);
     const bool is_least = (side == BoundSide::kLower) == (parameter.scale > 0);
-    if (is_least && ends.lower) ends.lower = std::max(*ends.lower, bound);
-    if (!is_least && ends.upper) ends.upper = std::min(*ends.upper, bound);
-  }
-  if (parameter.term->id == TermId::kAsymmetry) {  // the search ends before slip forces of zero
-    if (ends.lower) ends.lower = std::max(*ends.lower, -1.0);
-    if (ends.upper) ends.upper = std::min(*ends.upper, 1.0);
+    std::optional<double>& end = is_least ? ends.lower : ends.upper;
+    if (!end || !(is_least ? *end < bound : *end > bound)) continue;
+    end = IsSearchLimit(parameter, side) ? std::nullopt : std::optional(bound);
   }
   return ends;
 }

@@ -28,7 +28,8 @@ struct Ends {
 
 // The one place where the interval of an estimate is written, the union of its parts.
 
-/// Keeps the ends within bounds that are the user's or the theory's.
+/// Keeps the ends within bounds that are the user's or the theory's; one beyond a limit of the
+/// search, which says nothing of what lies there, is open.
 Ends WithinBounds(const Parameter& parameter, Ends ends);
 
 /// Begins the interval anew. An end that is not finite is open.

@@ -152,7 +152,8 @@ constexpr std::array kTermRows = {
          .start = 0.3,
          .needs = "slip_speed_exponent",
          .highest_is_of_theory = true},
-    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", kLeastSlipSpeedExponent, true),
+    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", kLeastSlipSpeedExponent, true,
+             true),
     SlipChange(
         "slip_trend",
         "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 at its "
