@@ -84,16 +84,10 @@ double IndependentSamples(const ScaledRecords& data, const FitResult& fit,
 /// True if all swings of the records are as wide as the widest, but for the steps of an encoder,
 /// those to their ends no wider. Then a steady contact of Masing's law and one of Dahl's own run
 /// along one curve, each with a σ and a Tc of its own (models/steady_loop.h).
-bool HasOneAmplitude(std::span<const loop::RecordView> records, const ScaledRecords& data,
-                     const Thresholds& thresholds) {
+/// @param step  of an encoder [units of the data]
+bool HasOneAmplitude(const ScaledRecords& data, double step, const Thresholds& thresholds) {
   double widest = 0.0;
   double narrowest = std::numeric_limits<double>::infinity();
-  double step = 0.0;
-  for (const loop::RecordView& record : records) {
-    if (!data.is_forced()) {
-      step = std::max(step, loop::EncoderStep(record.displacement) / data.length);
-    }
-  }
   for (const ScaledRecord& record : data.records) {
     if (record.reversals.empty()) return false;
     const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
@@ -125,7 +119,11 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     return record.initial_state == InitialState::kSteady;
   });
   const bool is_open = options.initial_states.empty();
-  const bool is_one_amplitude = HasOneAmplitude(records, data, options.thresholds);
+  double step = 0.0;
+  for (const RecordFit& record : fit.records) {
+    if (!data.is_forced()) step = std::max(step, record.encoder_step / data.length);
+  }
+  const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
   const bool is_one_curve = is_steady && is_one_amplitude;
   const auto starts_inside = [&](const ScaledRecord& record) {  // the range of its strokes
     const auto [low, high] = std::ranges::minmax(record.excitation());
@@ -136,6 +134,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_states = {InitialState::kVirgin};
   }
+  if (step > options.thresholds.coarse_step) return choice;
   const std::optional<FitResult> other = FitWithout({}, records, others);
   // At a bound of α, σ or Tc the law turns into another one.
   const bool is_at_bound = other && std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"},

@@ -229,18 +229,20 @@ void KeepLaw(const FitRequest& request, const FitOptions& options, report::NextS
   if (request.fit.model == nullptr) step.options += " --model " + std::string(options.model->name);
 }
 
+/// Returns the largest step of an encoder over the amplitude.
+double CoarsestStep(const FitResult& fit) {
+  double step = 0.0;
+  for (const auto& record : fit.records) step = std::max(step, record.encoder_step);
+  return step / fit.WidestRecord().facts.amplitude;
+}
+
 /// Fits the displacement in place of the force where an encoder reads it in few steps, and returns
-/// that where it describes the record as a whole: the noise is then where the steps are.
+/// that where it leaves no more than these and flicker of a count: the noise is then where the
+/// steps are.
 std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request,
                                                        const FitOptions& options,
                                                        std::span<const Record> records,
                                                        const FitResult& fit, FitResult& found) {
-  constexpr double kCoarse = 0.02;  // of the amplitude
-  const double amplitude = fit.WidestRecord().facts.amplitude;
-  const bool is_coarse = std::ranges::any_of(records, [&](const Record& record) {
-    return loop::EncoderStep(record.displacement) > kCoarse * amplitude;
-  });
-  if (!is_coarse) return std::nullopt;
   FitOptions tried = MakeFitOptions(request);
   tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
@@ -249,7 +251,11 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   } catch (const InvalidArgument&) {
     return std::nullopt;  // the options are those of a fit of the force
   }
-  if (!found.converged || found.adequacy.verdict != AdequacyVerdict::kAdequate) return std::nullopt;
+  constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
+  if (!found.converged || found.adequacy.verdict != AdequacyVerdict::kAdequate ||
+      found.rms > kOfSteps * CoarsestStep(found) * found.WidestRecord().facts.amplitude) {
+    return std::nullopt;
+  }
   report::NextStep step{.text = "steps of the displacement as its noise",
                         .options = "--noise-in displacement",
                         .misfit_before = *fit.adequacy.misfit_over_half_gap,
@@ -277,9 +283,9 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
-  if (!is_cut) {
-    auto step = TryNoiseInDisplacement(request, options, records, fit, found);
-    if (step) return step;
+  if (CoarsestStep(fit) > options.thresholds.coarse_step) {
+    if (is_cut) return std::nullopt;
+    return TryNoiseInDisplacement(request, options, records, fit, found);
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {

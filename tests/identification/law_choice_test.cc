@@ -115,6 +115,19 @@ TEST(LawChoice, IsNotMadeByTheStepsOfAnEncoder) {
   }
 }
 
+TEST(LawChoice, IsNotMadeByReadingsOfFewSteps) {
+  for (const char* model : {"mindlin-dahl", "dahl"}) {
+    for (const double steps : {3.5, 12.0, 25.0}) {
+      constexpr double kAmplitude = 2 * kGrossSlip;
+      Record record = Noisy(Virgin(model, kAmplitude, 4.0));
+      record.displacement = testing::Quantised(record.displacement, kAmplitude / steps);
+      const FitResult fit = FitOne(record);
+      ASSERT_TRUE(fit.law_choice) << model << steps;
+      EXPECT_EQ(fit.law_choice->decided, steps > 20) << model << steps;
+    }
+  }
+}
+
 TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
   // An amplitude that grows by 2 %, from the middle of a stroke on.
   const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);

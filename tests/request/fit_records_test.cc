@@ -136,6 +136,24 @@ TEST(NextStep, IsAFitOfTheDisplacementThatACoarseEncoderReads) {
   EXPECT_DOUBLE_EQ(made.next->misfit_after, fit.adequacy.misfit / fit.MisfitScale());
 }
 
+TEST(NextStep, IsNoneOfAnEncoderOfFewStepsWhereTheLoopSlides) {
+  // The force says nothing of the displacement there, and no term describes steps.
+  constexpr double kAmplitude = 1.5e-6;
+  io::RecordFile file;
+  for (const double sine : testing::Sine(4, 120)) {
+    file.record.displacement.push_back(kAmplitude * sine);
+    file.lines.push_back(file.lines.size() + 2);
+  }
+  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4.8e7, 1.0 / 3, 15.0},
+                                       file.record.displacement);
+  Generator generator(4);
+  for (double& force : file.record.force) force += 0.04 * testing::Normal(generator);
+  file.record.displacement = testing::Quantised(file.record.displacement, kAmplitude / 3.5);
+  const report::Report made = FitRecords({}, {file});
+  EXPECT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_FALSE(made.next);
+}
+
 TEST(FitRecords, SaysWhereSlipForcesAreNotInProportionToTheLoads) {
   FitRequest request;
   request.contact.normal_loads = {{50, 0}, {100, 0}, {200, 0}};

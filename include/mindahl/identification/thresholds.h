@@ -130,6 +130,9 @@ struct Thresholds {
   /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
   /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.
   double one_amplitude = 0.01;
+  /// [of X] An encoder of larger steps shows no difference of laws, and calls for no term. Half a
+  /// step is a fortieth of the stiff part of a loop, and the same in every stroke.
+  double coarse_step = 0.05;
   /// [R²] A loop that explains less of the force is not seen, and no parameter is given. The rest
   /// of the force is three times the loop: if a tenth of it is regular, that is a third of the
   /// loop.

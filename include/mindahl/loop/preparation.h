@@ -81,6 +81,7 @@ struct RecordReading {
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopFacts facts;                     ///< without its glitches, smoothed where it is noisy
   double displacement_noise = 0.0;     ///< [m]; 0 where readings are exact, and not smoothed
+  double encoder_step = 0.0;           ///< [m]; 0 where the displacement is no encoder's
   std::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
   std::size_t left_out = 0;            ///< samples that do not count
 };
@@ -90,7 +91,6 @@ struct PreparedRecord : RecordReading {
   RecordView record;                              ///< measured record; must outlive this
   std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
   std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
-  double encoder_step = 0.0;                      ///< [m]; 0 where the displacement is no encoder's
   std::vector<double> smoothed;                   ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
   std::vector<std::size_t> smoothing;
