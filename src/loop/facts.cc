@@ -130,10 +130,12 @@ std::optional<std::array<double, kEdges - 1>> MeansBetween(
   return integrals;
 }
 
-/// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest.
+/// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest;
+/// empty where two strokes between turns of the force have no displacement in common.
 template <std::size_t kParts>
 std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double centre,
                                                   double reach) {
+  if (!(reach > 0)) return std::nullopt;
   std::array<double, kParts + 1> edges{};
   for (std::size_t j = 0; j <= kParts; ++j) {
     edges[j] = centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
@@ -344,6 +346,7 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
     return values;
   };
   facts.steady_cycles = steady.size();
+  facts.amplitude = Mean(values_of(&CycleFacts::amplitude));
   facts.peak_force = Median(values_of(&CycleFacts::peak_force));
   facts.energy_per_cycle = Mean(values_of(&CycleFacts::energy));
   facts.energy_ratio = Mean(values_of(&CycleFacts::energy_ratio));

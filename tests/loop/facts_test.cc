@@ -170,6 +170,16 @@ TEST(MeasureFacts, MeansAreOfTheWidestCyclesAlone) {
   EXPECT_FALSE(facts.half_gap_standard_deviation);
 }
 
+TEST(MeasureFacts, AmplitudeIsThatOfCyclesAndNotOfATravel) {
+  Parallelogram loop;
+  Record record = MakeRecord(loop);
+  for (double x = -loop.amplitudes.back(); x < 5; x += 0.01) {
+    record.displacement.push_back(x);
+    record.force.push_back(0.0);
+  }
+  EXPECT_NEAR(FactsOf(record).amplitude, loop.amplitudes.back(), kRounding);
+}
+
 TEST(MeasureFacts, AsymmetryIsHowMuchTheStrokesDifferTurnedAboutTheCentre) {
   // A force aδ² in both strokes: of the turned strokes it is the mean that differs.
   constexpr double kCurvature = 0.3;

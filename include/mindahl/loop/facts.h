@@ -39,8 +39,8 @@ struct LoopFacts {
   /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
   /// start and to its end count by their length, 0.02 cycles short of one is one.
   std::size_t complete_cycles = 0;
-  /// X [m]: half the mean range of the main strokes, those at least 0.95 times as wide as the
-  /// widest; half the range of a record that has no stroke
+  /// X [m]: the mean of steady cycles'; where none closes half the mean range of the strokes that
+  /// are at least 0.95 times as wide as the widest, else half the record's
   double amplitude = 0.0;
   double peak_force = 0.0;  ///< T* [N]: the median of steady cycles', else half the force's range
   bool closed = false;      ///< false: the record closes no cycle, and there are no facts but these
