@@ -122,7 +122,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   }
   if (!result->converged) fit.flags.emplace_back("not_converged");
   const identification::RecordFit& fitted = result->records.front();
-  if (fitted.glitches.total > 0) fit.flags.emplace_back("glitches");
+  if (!fitted.glitches.empty()) fit.flags.emplace_back("glitches");
   if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
   FillFacts(FactsOf(record, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign

@@ -49,11 +49,10 @@ void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
   Interpolated interpolated = FindAndInterpolate(prepared.record);
-  GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < interpolated.glitches.size(); ++i) {
     if (!interpolated.glitches[i]) continue;
     prepared.counts[i] = 0;
-    if (count.total++ == 0) count.first = i;
+    prepared.glitches.push_back(i);
   }
   prepared.interpolated_displacement = std::move(interpolated.displacement);
   prepared.interpolated_force = std::move(interpolated.force);

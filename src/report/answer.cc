@@ -267,8 +267,9 @@ class Writer {
   void AddLeftOut() {
     std::vector<std::string> parts;
     for (const LeftOut& part : report_.left_out) {
-      parts.push_back(part.first == 0
-                          ? fmt::format("{} samples ({})", part.samples, part.why)
+      parts.push_back(part.first == 0 ? fmt::format("{} samples ({})", part.samples, part.why)
+                      : part.first == part.last
+                          ? fmt::format("line {} ({})", part.first, part.why)
                           : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
     }
     Add("left out", parts);

@@ -180,6 +180,9 @@ Reasons ReasonsOf(const Report& report) {
           {"law", "the record does not distinguish the laws, or they are not compared"},
           {"contact",
            "it needs what is not known of the contact, or follows from a parameter that is open"},
+          {"contact.normal_load.ci95", "it is exact, or not known"},
+          {"mapping.sigma_over_hertz_mindlin",
+           "it needs what is not known of the contact, or sigma is open"},
           {"mapping", "alpha is held, at a bound or not identifiable, or it is a torque"},
           {"compared", "there are no cycles to hold out, or a fit without them failed"},
           {"next", "nothing that was tried helps by a tenth"}};

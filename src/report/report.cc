@@ -28,18 +28,36 @@ void TranslateToTorque(Report& report) {
   }
 }
 
+/// Adds faults to what is left out: each run of them where they are few.
+void LeaveOutFaults(const RecordFit& fit, const io::RecordFile& file, std::vector<LeftOut>& out) {
+  constexpr std::size_t kFew = 5;
+  std::vector<LeftOut> runs;
+  for (std::size_t k = 0; k < fit.glitches.size(); ++k) {
+    const std::size_t line = file.LineOf(fit.glitches[k]);
+    if (k == 0 || fit.glitches[k] != fit.glitches[k - 1] + 1) {
+      runs.push_back({.file = file.name, .first = line, .why = "faults"});
+    }
+    runs.back().last = line;
+    ++runs.back().samples;
+  }
+  if (runs.size() > kFew) runs = {{file.name, fit.glitches.size(), 0, 0, "faults"}};
+  out.insert(out.end(), runs.begin(), runs.end());
+}
+
 /// Counts the samples, and adds those of the records that do not count to what is left out.
 void CountSamples(Report& report) {
   for (const LeftOut& part : report.left_out) report.samples += part.samples;
+  const loop::PreparationOptions& chosen = report.options.preparation;
+  const bool is_selected = chosen.load_window || chosen.samples || chosen.cycles;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const RecordFit& fit = report.fit.records[r];
     const io::RecordFile& file = report.records[r];
     report.samples += file.record.size();
-    const std::size_t faults = fit.glitches.total;
-    const std::size_t selected = fit.left_out - std::min(fit.left_out, faults);
-    const std::size_t line = faults == 1 ? file.LineOf(fit.glitches.first) : 0;
-    if (faults > 0) report.left_out.push_back({file.name, faults, line, line, "faults"});
-    if (selected > 0) report.left_out.push_back({file.name, selected, 0, 0, "selection"});
+    LeaveOutFaults(fit, file, report.left_out);
+    const std::size_t others = fit.left_out - std::min(fit.left_out, fit.glitches.size());
+    if (others > 0) {
+      report.left_out.push_back({file.name, others, 0, 0, is_selected ? "selection" : "lag"});
+    }
   }
 }
 

@@ -46,12 +46,6 @@ std::vector<double> Smoothed(std::span<const double> displacement,
 std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
                                        std::span<const std::size_t> reversals);
 
-/// How many samples of a record are glitches [-], and which is the first.
-struct GlitchCount {
-  std::size_t total = 0;
-  std::size_t first = 0;  ///< sample, where there is one
-};
-
 /// A record without its glitches: lines over the samples that are left out. All empty where there
 /// is no glitch; a channel is also empty where there is none in it.
 struct Interpolated {

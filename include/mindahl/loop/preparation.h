@@ -77,7 +77,7 @@ struct PreparationOptions {
 /// Describes how a record was read.
 struct RecordReading {
   ReversalGate gate;                   ///< [unit of the excitation]; `certain` where it was given
-  GlitchCount glitches;                ///< glitches left out
+  std::vector<std::size_t> glitches;   ///< samples left out as glitches
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopFacts facts;                     ///< without its glitches, smoothed where it is noisy
   double displacement_noise = 0.0;     ///< [m]; 0 where readings are exact, and not smoothed
