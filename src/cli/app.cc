@@ -41,7 +41,9 @@ class CommandConfig : public CLI::ConfigTOML {
     try {
       options = toml::parse(input);
     } catch (const toml::parse_error& error) {
-      Refuse("--config: line {}: {}", error.source().begin.line, error.description());
+      const toml::source_position& at = error.source().begin;
+      Refuse("--config {}:{}:{}: {}", app_.get_config_ptr()->as<std::string>(), at.line, at.column,
+             error.description());
     }
     for (const auto& [key, node] : options) {
       CLI::ConfigItem& item = read.emplace_back();

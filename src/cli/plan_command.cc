@@ -94,6 +94,9 @@ Plan MakePlan(const PlanOptions& options) {
   } else {
     expected.law = ResolveLaw(options.law);
   }
+  if (options.record.empty() && !options.force_noise) {
+    Refuse("--force-noise missing: give the standard deviation of the force's noise, or --record");
+  }
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (options.displacement_noise) expected.displacement_noise = *options.displacement_noise;
   plan.slip = SlipReach(expected.law, expected.rig);

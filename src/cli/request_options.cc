@@ -264,6 +264,11 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       .AddRead<std::vector<std::string>>(
           "--terms",
           [&options](const std::vector<std::string>& names) {
+            for (const std::string& name : names) {
+              if (names.size() > 1 && (name == "auto" || name == "none")) {
+                Refuse("--terms: {} stands alone: leave it or the others out", name);
+              }
+            }
             options.chooses_terms = names == std::vector<std::string>{"auto"};
             if (!options.chooses_terms && names != std::vector<std::string>{"none"}) {
               options.terms = names;

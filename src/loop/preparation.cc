@@ -81,8 +81,10 @@ std::pair<std::size_t, std::size_t> ChosenSamples(const PreparedRecord& prepared
                                                   const PreparationOptions& options) {
   const auto require = [&](const CountRange& range, std::string_view what, std::size_t has) {
     if (range.first <= has) return;
-    throw InvalidArgument(fmt::format("{} {}:{} contain nothing of record {}, which has {} of them",
-                                      what, range.first, range.last, number + 1, has));
+    throw InvalidArgument(
+        fmt::format("{0} {1}:{2} contain nothing of record {3}, which has {4} of "
+                    "them: --select {0}=1:{4} is all",
+                    what, range.first, range.last, number + 1, has));
   };
   std::size_t first = 0;
   std::size_t last = prepared.size();

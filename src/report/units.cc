@@ -107,9 +107,9 @@ std::string QuantityWithInterval(std::optional<double> value, std::optional<doub
   if (!value && upper) return "< " + Quantity(*upper, unit, kDigitsOfLimit);
   if (!value) return "";
   if (!lower && !upper) return Quantity(*value, unit);
-  const ScaledUnit scaled = UnitFor(unit, *value);
   // Two digits of half the interval.
   const double half = (upper.value_or(*value) - lower.value_or(*value)) / (lower && upper ? 2 : 1);
+  const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(*value), half));
   const auto rounded = [&](double end) {
     return RoundedTo(half / scaled.factor, end / scaled.factor);
   };

@@ -85,10 +85,11 @@ BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
   } else if (request.sigma && request.slip_force) {
     law = {.tangential_stiffness = *request.sigma, .slip_force = *request.slip_force};
   } else {
-    Refuse(
-        "{} missing: give --sigma and --slip-force, or a contact (--friction, --normal-load, "
-        "--contact-radius, --compliance or materials and radii)",
-        request.sigma ? "--slip-force" : "--sigma");
+    Refuse("{} missing: give --sigma and --slip-force{}",
+           request.sigma ? "--slip-force" : "--sigma",
+           model.empty() ? ""
+                         : ", or a contact (--friction, --normal-load, --contact-radius, "
+                           "--compliance or materials and radii)");
   }
   if (request.alpha) law.shape_exponent = *request.alpha;
   Validate(law);

@@ -86,7 +86,9 @@ FitOptions MakeFitOptions(const FitRequest& request) {
   Validate(fit);
   for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
-  for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);
+  for (const auto& [name, interval] : fit.bounds) {
+    if (!request.chooses_terms) RequireFitted("--bound", name, fit);  // else it may come to be
+  }
   return fit;
 }
 

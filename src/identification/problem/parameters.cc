@@ -344,7 +344,7 @@ std::string Parameters::UnitOf(std::size_t i, bool timed) const {
   return std::string(timed || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
 }
 
-Parameter& Parameters::Find(std::string_view name) {
+Parameter& Parameters::Find(std::string_view name, std::string_view what) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (NameOf(i) != name) continue;
     if (parameters_[i].absent && parameters_[i].term->presence == Presence::kLoadSeries) {
@@ -362,16 +362,16 @@ Parameter& Parameters::Find(std::string_view name) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (parameters_[i].term->presence != Presence::kNever) names.push_back(NameOf(i));
   }
-  throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
+  throw InvalidArgument(fmt::format("{}parameter {}", what, UnknownAmong(name, names)));
 }
 
 void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
   for (const auto& [name, interval] : options.bounds) {
-    Parameter& parameter = Find(name);
+    Parameter& parameter = Find(name, "bounds of ");
     const auto& [from, to] = interval;
     const double open = parameter.term->positive ? parameter.lower : parameter.ToTheta(0.0);
-    const double upper = ThetaOf(parameter, name, to);
-    const double lower = from == 0.0 ? open : ThetaOf(parameter, name, from);
+    const double upper = ThetaOf(parameter, "bound of " + name, to);
+    const double lower = from == 0.0 ? open : ThetaOf(parameter, "bound of " + name, from);
     if (!(from < to)) {
       throw InvalidArgument(
           fmt::format("bounds {}:{} of {} are invalid: the first must be smaller", from, to, name));
@@ -381,8 +381,8 @@ void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
     parameter.bounded_by_user = true;
   }
   for (const auto& [name, value] : options.fixed) {
-    Parameter& parameter = Find(name);
-    parameter.theta = ThetaOf(parameter, name, value);
+    Parameter& parameter = Find(name, "fixed ");
+    parameter.theta = ThetaOf(parameter, "fixed " + name, value);
     if (name == "alpha" && options.model->shape_exponent &&
         *options.model->shape_exponent != value) {
       throw InvalidArgument(fmt::format(
@@ -402,8 +402,8 @@ void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
 
 void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
   for (const auto& [name, prior] : options.priors) {
-    Parameter& parameter = Find(name);
-    const double theta = ThetaOf(parameter, name, prior.value);
+    Parameter& parameter = Find(name, "prior of ");
+    const double theta = ThetaOf(parameter, "prior of " + name, prior.value);
     const std::string uncertainty =
         fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
     RequirePositive(uncertainty, prior.standard_uncertainty);
@@ -418,8 +418,8 @@ void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
     parameter.prior_root_weight = prior_noise * unit / prior.standard_uncertainty;
   }
   for (const auto& [name, value] : options.start) {
-    Parameter& parameter = Find(name);
-    const double theta = ThetaOf(parameter, name, value);
+    Parameter& parameter = Find(name, "start of ");
+    const double theta = ThetaOf(parameter, "start of " + name, value);
     if (parameter.fixed) continue;
     parameter.theta = theta;
     parameter.started_by_user = true;

@@ -144,7 +144,8 @@ class Parameters {
   void KeepSlipForceAboveLoops(const ScaledRecords& data,
                                std::span<const models::InitialState> states);
   void Sort();
-  [[nodiscard]] Parameter& Find(std::string_view name);
+  /// @param what  is said of it, in a message
+  [[nodiscard]] Parameter& Find(std::string_view name, std::string_view what);
 
   std::vector<Parameter> parameters_;
   std::vector<std::size_t> free_;
