@@ -324,7 +324,15 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
 
 void Describe(std::vector<Evolution>& evolutions) {
   std::erase_if(evolutions, [](const Evolution& each) { return each.course.bins().empty(); });
-  for (Evolution& each : evolutions) each.description = *Describe(each.course);
+  std::size_t most = 0;
+  for (const Evolution& each : evolutions) most = std::max(most, each.known);
+  for (Evolution& each : evolutions) {
+    each.description = *Describe(each.course);
+    each.is_of_few = 2 * each.known < most;
+    if (!each.is_of_few) continue;
+    each.description.changes.clear();
+    each.description.settled_at.reset();
+  }
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {
@@ -334,7 +342,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
   for (const Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const CourseDescription& course = evolution.description;
-    if (quantity.symbol.empty()) continue;
+    if (quantity.symbol.empty() || evolution.is_of_few) continue;
     const bool is_force = quantity.name == "friction_coefficient" ||
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;

@@ -154,6 +154,22 @@ TEST(Evolutions, HoldEachQuantityOfACycleUnlessItIsOpen) {
   EXPECT_THAT(held({"slip_force_open"}), AllOf(SizeIs(7), Not(Contains(whole[1]))));
 }
 
+TEST(Headline, IsOfTheHalfGapWhereFewCyclesDetermineTheSlipForce) {
+  std::vector<Evolution> evolutions = BeginEvolutions(false);
+  CycleFit fit;
+  for (fit.number = 1; fit.number <= 100; ++fit.number) {
+    const bool is_first = fit.number <= 20;
+    const bool is_open = !is_first && fit.number % 4 != 0;
+    fit["slip_force"] = is_first ? 2.0 : 0.4;
+    fit["half_gap"] = 0.3;
+    fit.flags = is_open ? std::vector<std::string>{"slip_force_open"} : std::vector<std::string>{};
+    AddTo(evolutions, fit);
+  }
+  Describe(evolutions);
+  EXPECT_EQ(Headline(evolutions), "half gap 300 mN throughout, but for scatter");
+  EXPECT_THAT(ChangeStatements(evolutions), IsEmpty());
+}
+
 // ---
 // How a course is described.
 

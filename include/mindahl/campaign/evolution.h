@@ -96,6 +96,9 @@ struct Evolution {
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
+  /// True of fewer than half the cycles that tell most of a quantity: cycles that differ from the
+  /// rest, of which no course of the test is.
+  bool is_of_few = false;
 };
 
 /// Returns the evolutions of all of them before the first cycle.
@@ -105,12 +108,12 @@ std::vector<Evolution> BeginEvolutions(bool is_torsional);
 /// that did not converge, nor of a quantity that it leaves open.
 void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 
-/// Describes those that have a value, and removes the others.
+/// Describes those that have a value, and removes the others; no changes of one that is of few.
 void Describe(std::vector<Evolution>& evolutions);
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
 /// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
-/// open, then stiffness and contact radius.
+/// open or of few cycles, then stiffness and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, the largest first, of more
