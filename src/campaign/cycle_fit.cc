@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -77,7 +78,8 @@ void FillParameter(const FitResult& result, const std::string& name, CycleFit& f
   if (estimate == nullptr) return;
   if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
   fit[name] = estimate->value;
-  if (estimate->standard_error) fit[name + "_error"] = result.ErrorOf(*estimate);
+  const double error = result.ErrorOf(*estimate);
+  if (estimate->standard_error && std::isfinite(error)) fit[name + "_error"] = error;
 }
 
 // A torque about the contact has no contact radius, the last of them.

@@ -211,7 +211,7 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   const double way = cycle.second.displacement.back() - cycle.first.displacement.front();
   CycleFacts facts;
   facts.start = points[0];
-  facts.amplitude = (cycle.first.travel() + cycle.second.travel()) / 4;
+  facts.amplitude = cycle.first.travel() / 4 + cycle.second.travel() / 4;
   facts.peak_force = PeakForce(cycle);
   facts.energy = CycleEnergy(record, points[0], points[2]);
   const double rectangle = 4 * facts.amplitude * facts.peak_force;

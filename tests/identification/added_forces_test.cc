@@ -204,7 +204,7 @@ TEST(AddedForces, ExponentsAndAPeriodMustBePositive) {
     const std::string message = MessageOf([&] {
       FitOne(record, {.terms = terms, .fixed = {{terms.front(), value}}});
     });
-    EXPECT_THAT(message, ::testing::StartsWith(terms.front() + " ["));
+    EXPECT_THAT(message, ::testing::StartsWith("fixed " + terms.front() + " ["));
     EXPECT_THAT(message, HasSubstr("must be "));
   }
 }

@@ -20,19 +20,23 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0"},
       {{.max_iterations = 0}, "maximum iterations [-] = 0 is invalid: must be >= 1"},
       {{.fixed = {{"stiffness", 1}}},
-       "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
+       "fixed parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, "
+       "rig_stiffness, "
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
        "drag_exponent, plateau_curvature, ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
-      {{.fixed = {{"sigma", 0}}}, "sigma [N/m] = 0 is invalid: must be finite and > 0"},
-      {{.fixed = {{"alpha", -0.1}}}, "alpha [-] = -0.1 is invalid: must be finite and >= 0"},
-      {{.start = {{"slip_force", -3}}}, "slip_force [N] = -3 is invalid: must be finite and > 0"},
-      {{.fixed = {{"force_offset", kNan}}}, "force_offset [N] = nan is invalid: must be finite"},
+      {{.fixed = {{"sigma", 0}}}, "fixed sigma [N/m] = 0 is invalid: must be finite and > 0"},
+      {{.fixed = {{"alpha", -0.1}}}, "fixed alpha [-] = -0.1 is invalid: must be finite and >= 0"},
+      {{.start = {{"slip_force", -3}}},
+       "start of slip_force [N] = -3 is invalid: must be finite and > 0"},
+      {{.fixed = {{"force_offset", kNan}}},
+       "fixed force_offset [N] = nan is invalid: must be finite"},
       {{.bounds = {{"alpha", {1, 0.5}}}},
        "bounds 1:0.5 of alpha are invalid: the first must be smaller"},
-      {{.bounds = {{"sigma", {-1, 5}}}}, "sigma [N/m] = -1 is invalid: must be finite and > 0"},
+      {{.bounds = {{"sigma", {-1, 5}}}},
+       "bound of sigma [N/m] = -1 is invalid: must be finite and > 0"},
       {{.model = &Model("mindlin"), .fixed = {{"alpha", 0.5}}},
        "alpha cannot be fixed at 0.5: the model 'mindlin' prescribes alpha = 0.3333333333333333; "
        "use mindlin-dahl"},
@@ -46,7 +50,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
   EXPECT_THAT(RefusalOf({Loop()}, {.preparation = {.held_out = {std::vector{true, false}}}}),
               HasSubstr("held-out mask"));
   EXPECT_THAT(RefusalOf({Loop()}, {.start = {{"force_offset_2", 1}}}),
-              StartsWith("parameter 'force_offset_2' is unknown: must be "
+              StartsWith("parameter with a start 'force_offset_2' is unknown: must be "
                          "one of sigma, "));
 }
 

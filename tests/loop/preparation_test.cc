@@ -86,11 +86,13 @@ std::string RefusalOf(const PreparationOptions& options) {
 
 TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
   EXPECT_EQ(RefusalOf({.cycles = CountRange{5, 6}}),
-            "cycles 5:6 contain nothing of record 1, which has 4 of them");
+            "cycles 5:6 contain nothing of record 1, which has 4 of them: --select cycles=1:4 "
+            "is all");
   EXPECT_EQ(RefusalOf({.cycles = CountRange{0, 2}}),
             "--select cycles: '0:2' is empty: the first number must not be the larger");
   EXPECT_EQ(RefusalOf({.samples = CountRange{302, 400}}),
-            "samples 302:400 contain nothing of record 1, which has 301 of them");
+            "samples 302:400 contain nothing of record 1, which has 301 of them: --select "
+            "samples=1:301 is all");
   EXPECT_EQ(RefusalOf({.samples = CountRange{7, 6}}),
             "--select samples: '7:6' is empty: the first number must not be the larger");
 }

@@ -184,6 +184,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     if (*upper < *lower) std::swap(lower, upper);
   }
   SetInterval(estimate, WithinBounds(parameter, {.lower = lower, .upper = upper}));
+  if (!estimate.lower95 || !estimate.upper95) estimate.standard_error.reset();
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {

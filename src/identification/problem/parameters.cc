@@ -362,12 +362,12 @@ Parameter& Parameters::Find(std::string_view name, std::string_view what) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (parameters_[i].term->presence != Presence::kNever) names.push_back(NameOf(i));
   }
-  throw InvalidArgument(fmt::format("{}parameter {}", what, UnknownAmong(name, names)));
+  throw InvalidArgument(fmt::format("{} {}", what, UnknownAmong(name, names)));
 }
 
 void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
   for (const auto& [name, interval] : options.bounds) {
-    Parameter& parameter = Find(name, "bounds of ");
+    Parameter& parameter = Find(name, "parameter with bounds");
     const auto& [from, to] = interval;
     const double open = parameter.term->positive ? parameter.lower : parameter.ToTheta(0.0);
     const double upper = ThetaOf(parameter, "bound of " + name, to);
@@ -381,7 +381,7 @@ void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
     parameter.bounded_by_user = true;
   }
   for (const auto& [name, value] : options.fixed) {
-    Parameter& parameter = Find(name, "fixed ");
+    Parameter& parameter = Find(name, "fixed parameter");
     parameter.theta = ThetaOf(parameter, "fixed " + name, value);
     if (name == "alpha" && options.model->shape_exponent &&
         *options.model->shape_exponent != value) {
@@ -402,7 +402,7 @@ void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
 
 void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
   for (const auto& [name, prior] : options.priors) {
-    Parameter& parameter = Find(name, "prior of ");
+    Parameter& parameter = Find(name, "parameter with a prior");
     const double theta = ThetaOf(parameter, "prior of " + name, prior.value);
     const std::string uncertainty =
         fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
@@ -418,7 +418,7 @@ void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
     parameter.prior_root_weight = prior_noise * unit / prior.standard_uncertainty;
   }
   for (const auto& [name, value] : options.start) {
-    Parameter& parameter = Find(name, "start of ");
+    Parameter& parameter = Find(name, "parameter with a start");
     const double theta = ThetaOf(parameter, "start of " + name, value);
     if (parameter.fixed) continue;
     parameter.theta = theta;

@@ -144,7 +144,7 @@ class Parameters {
   void KeepSlipForceAboveLoops(const ScaledRecords& data,
                                std::span<const models::InitialState> states);
   void Sort();
-  /// @param what  is said of it, in a message
+  /// @param what  it is, in a message
   [[nodiscard]] Parameter& Find(std::string_view name, std::string_view what);
 
   std::vector<Parameter> parameters_;
