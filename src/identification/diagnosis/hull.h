@@ -14,8 +14,8 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 
-/// What extends the interval of a parameter beyond that of noise alone: other laws that the record
-/// does not exclude, and what the model misses. Such an error does not average out, however many
+/// Extends the interval of a parameter beyond that of noise alone: by other laws that the record
+/// does not exclude, and by what the model misses. Such an error does not average out, however many
 /// samples there are, and its size is that of the record.
 namespace mindahl::identification {
 
