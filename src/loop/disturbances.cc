@@ -29,12 +29,11 @@ double SmallestStep(std::span<const double> displacement) {
 }
 
 /// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
-/// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive has
-/// no fixed number of samples.
-bool IsQuantised(std::span<const double> displacement, double step) {
+/// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive
+/// that goes on has no fixed number of samples.
+bool IsQuantised(std::span<const double> displacement, double step, bool rests_at_turns) {
   constexpr double kWhole = 1e-6;
   constexpr double kMostBroken = 0.01;  // of the pairs
-  constexpr std::size_t kFewestRests = 3;
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
   constexpr double kFinest = 1e-9;
   const auto [lowest, highest] = ExtremesOf(displacement);
@@ -42,16 +41,21 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   auto broken = kMostBroken * static_cast<double>(displacement.size() - 1);  // that are left
   std::size_t rest = 1;                                                      // samples
   std::set<std::size_t> rests;                                               // different ones
-  bool is_even = true;
+  double last = 0.0;  // steps of the last motion
   for (std::size_t i = 1; i < displacement.size(); ++i) {
-    const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
+    const double steps = (displacement[i] - displacement[i - 1]) / step;
     const double nearest = std::round(steps);
     if (!(std::abs(steps - nearest) < kWhole) && --broken < 0) return false;
-    if (nearest > 1) is_even = false;
-    if (nearest > 0 && rests.size() < kFewestRests) rests.insert(rest);
-    rest = nearest > 0 ? 1 : rest + 1;
+    if (nearest == 0) {
+      ++rest;
+      continue;
+    }
+    const bool counts = last != 0 && (rests_at_turns || last * nearest > 0);
+    if (counts && rests.size() < 2) rests.insert(rest);
+    last = nearest;
+    rest = 1;
   }
-  return is_even ? rests.size() == kFewestRests : rests.size() > 1;
+  return rests.size() > 1;
 }
 
 /// Windows that are tried, each about √2 times the last.
@@ -103,9 +107,9 @@ std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise
 
 }  // namespace
 
-double EncoderStep(std::span<const double> displacement) {
-  const double step = SmallestStep(displacement);
-  return step > 0 && IsQuantised(displacement, step) ? step : 0.0;
+double EncoderStep(std::span<const double> readings, bool rests_at_turns) {
+  const double step = SmallestStep(readings);
+  return step > 0 && IsQuantised(readings, step, rests_at_turns) ? step : 0.0;
 }
 
 double EstimateDisplacementNoise(std::span<const double> displacement) {

@@ -67,6 +67,14 @@ TEST(EncoderStep, IsZeroForADriveThatRunsEvenlyOrFromRestToRest) {
   EXPECT_EQ(EncoderStep(between), 0.0);
   EXPECT_EQ(EncoderStep(Repeated(between, 3)), 0.0);
   EXPECT_EQ(EncoderStep(Sine(3, 200)), 0.0);
+  // A trapezoid whose ramps end with half a step, and whose dwells differ by a sample.
+  History dwells;
+  for (std::size_t i = 0; i < 600; ++i) {
+    const double phase = std::fmod(static_cast<double>(i), 100.5);
+    const double up = std::min(phase, 25.5);
+    dwells.push_back(phase < 50 ? up : std::max(25.5 - (phase - 50), 0.0));
+  }
+  EXPECT_EQ(EncoderStep(dwells), 0.0);
 }
 
 History SmoothedOf(const History& readings, double noise) {

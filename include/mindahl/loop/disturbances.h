@@ -17,7 +17,9 @@ double EstimateDisplacementNoise(std::span<const double> displacement);
 
 /// Returns the step [m] of the encoder that a displacement was read from: neighbours differ by
 /// whole steps or not at all. 0 where it was not.
-double EncoderStep(std::span<const double> displacement);
+/// @param rests_at_turns  does a rest where the readings turn say so? Of a force, which rests where
+///                        the contact slips, but not of a drive, which may dwell
+double EncoderStep(std::span<const double> readings, bool rests_at_turns = false);
 
 /// Returns how far the windows reach, h samples to either side of each sample, over which a
 /// displacement is smoothed where the motion is smooth.

@@ -76,7 +76,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
 void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {
   double step = 0.0;
   for (const loop::PreparedRecord& record : records.records) {
-    step = std::max(step, loop::EncoderStep(record.record.force));
+    step = std::max(step, loop::EncoderStep(record.record.force, /*rests_at_turns=*/true));
   }
   if (!(result.rms < step / 2)) return;
   constexpr double kOfShape = 5.0;

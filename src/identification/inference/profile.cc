@@ -148,7 +148,8 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
-      (!slips || std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
+      (!slips || result.law.shape_exponent <= options.thresholds.jenkins_shape ||
+       std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
        is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options, solver));
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig};
   if (is_badly_known(kStiffness)) return {kStiffness};
