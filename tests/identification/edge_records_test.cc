@@ -70,6 +70,27 @@ TEST(EdgeRecords, CoarseStepsOfTheForceAreInTheIntervals) {
   }
 }
 
+/// Slip in one direction alone tells Tc and the offset of the force apart by where both offsets put
+/// the knee: nothing of α = 0, and next to it a valley that a parabola sees the floor of.
+TEST(EdgeRecords, SlipInOneDirectionOfASharpKneeLeavesTheSlipForceOpen) {
+  constexpr models::BranchLaw kJenkins{1e7, 0.0, 50.0};
+  constexpr double kAmplitude = 3e-6;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
+    SCOPED_TRACE(seed);
+    Generator generator(seed);
+    History displacement;
+    for (int i = 0; i <= 240; ++i) {
+      displacement.push_back(kAmplitude * (1 - std::cos(2 * std::numbers::pi * i / 80)));
+    }
+    Record record = testing::LoopOf(kJenkins, displacement);
+    for (double& force : record.force) force += 0.05 * Normal(generator);
+    const FitResult fit = FitOne(record);
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    EXPECT_TRUE(!slip_force.is_known() || Covers(slip_force, kJenkins.slip_force))
+        << slip_force.value;
+  }
+}
+
 TEST(EdgeRecords, AsManySamplesAsFreeParameters) {
   // σ, α and Tc: at the file's zeros the contact is unloaded.
   const Record record = MakeRecord({0.0, 0.0002828427124746, 0.0004}, {0, 20, 20});
