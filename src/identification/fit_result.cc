@@ -38,6 +38,12 @@ models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
   return models::AtLoad(law, record.load_ratio, load_exponent);
 }
 
+double FitResult::EncoderStep() const {
+  double step = 0.0;
+  for (const RecordFit& record : records) step = std::max(step, record.encoder_step);
+  return step;
+}
+
 double FitResult::ResponseNoise() const {
   if (response == loop::Channel::kForce) return force_noise;
   return records.empty() ? 0.0 : records.front().displacement_noise;

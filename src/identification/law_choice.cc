@@ -119,10 +119,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     return record.initial_state == InitialState::kSteady;
   });
   const bool is_open = options.initial_states.empty();
-  double step = 0.0;
-  for (const RecordFit& record : fit.records) {
-    if (!data.is_forced()) step = std::max(step, record.encoder_step / data.length);
-  }
+  const double step = data.is_forced() ? 0.0 : fit.EncoderStep() / data.length;
   const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
   const bool is_one_curve = is_steady && is_one_amplitude;
   const auto starts_inside = [&](const ScaledRecord& record) {  // the range of its strokes

@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/extremes.h"
@@ -40,7 +39,8 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
   if (!(step > kFinest * (highest - lowest))) return false;
   auto broken = kMostBroken * static_cast<double>(displacement.size() - 1);  // that are left
   std::size_t rest = 1;                                                      // samples
-  std::set<std::size_t> rests;                                               // different ones
+  std::size_t first_rest = 0;                                                // 0 before it
+  bool rests_differ = false;
   double last = 0.0;  // steps of the last motion
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = (displacement[i] - displacement[i - 1]) / step;
@@ -50,12 +50,14 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
       ++rest;
       continue;
     }
-    const bool counts = last != 0 && (rests_at_turns || last * nearest > 0);
-    if (counts && rests.size() < 2) rests.insert(rest);
+    if (last != 0 && (rests_at_turns || last * nearest > 0)) {
+      rests_differ = rests_differ || (first_rest != 0 && rest != first_rest);
+      if (first_rest == 0) first_rest = rest;
+    }
     last = nearest;
     rest = 1;
   }
-  return rests.size() > 1;
+  return rests_differ;
 }
 
 /// Windows that are tried, each about √2 times the last.

@@ -142,7 +142,10 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
   std::erase(symmetric.terms, "asymmetry");
   std::size_t of_asymmetry = options.terms.size() - symmetric.terms.size();
   const auto erase = [&](auto& values) { of_asymmetry += values.erase("asymmetry"); };
-  erase(symmetric.fixed), erase(symmetric.priors), erase(symmetric.start), erase(symmetric.bounds);
+  erase(symmetric.fixed);
+  erase(symmetric.priors);
+  erase(symmetric.start);
+  erase(symmetric.bounds);
   if (chooses_law && of_asymmetry > 0) {
     options.model = FitByLaw(true, symmetric, records).options.model;
   }
@@ -229,13 +232,6 @@ void KeepLaw(const FitRequest& request, const FitOptions& options, report::NextS
   if (request.fit.model == nullptr) step.options += " --model " + std::string(options.model->name);
 }
 
-/// Returns the largest step of an encoder over the amplitude.
-double CoarsestStep(const FitResult& fit) {
-  double step = 0.0;
-  for (const auto& record : fit.records) step = std::max(step, record.encoder_step);
-  return step / fit.WidestRecord().facts.amplitude;
-}
-
 /// Fits the displacement in place of the force where an encoder reads it in few steps, and returns
 /// that where it leaves no more than these and flicker of a count: the noise is then where the
 /// steps are.
@@ -253,7 +249,7 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   }
   constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
   if (!found.converged || found.adequacy.verdict != AdequacyVerdict::kAdequate ||
-      found.rms > kOfSteps * CoarsestStep(found) * found.WidestRecord().facts.amplitude) {
+      found.rms > kOfSteps * found.EncoderStep()) {
     return std::nullopt;
   }
   report::NextStep step{.text = "steps of the displacement as its noise",
@@ -283,7 +279,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
-  if (CoarsestStep(fit) > options.thresholds.coarse_step) {
+  if (fit.EncoderStep() > options.thresholds.coarse_step * fit.WidestRecord().facts.amplitude) {
     if (is_cut) return std::nullopt;
     return TryNoiseInDisplacement(request, options, records, fit, found);
   }

@@ -161,6 +161,9 @@ struct FitResult {
   /// Returns the law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
   [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
 
+  /// Returns the largest step of an encoder that read a displacement [m]; 0 where none did.
+  [[nodiscard]] double EncoderStep() const;
+
   /// Returns the noise of the fitted channel [N or m], its standard deviation, known or estimated.
   [[nodiscard]] double ResponseNoise() const;
 
