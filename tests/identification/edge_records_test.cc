@@ -70,8 +70,8 @@ TEST(EdgeRecords, CoarseStepsOfTheForceAreInTheIntervals) {
   }
 }
 
-/// Of a sharp knee that slips in one direction Tc and both offsets are one valley, of which a
-/// parabola sees the floor.
+/// A loop with a sharp knee that slips in one direction leaves Tc and the two offsets correlated. A
+/// parabola at the minimum does not show how far Tc may lie from it.
 TEST(EdgeRecords, SlipInOneDirectionOfASharpKneeHasNoNarrowIntervalBesideTheTruth) {
   constexpr models::BranchLaw kJenkins{1e7, 0.0, 50.0};
   constexpr double kAmplitude = 3e-6;

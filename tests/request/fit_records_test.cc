@@ -46,19 +46,28 @@ TEST(FitRecords, RefusesADisplacementAndAForceThatNeverChange) {
               StartsWith("b.csv:3:4: the force never changes, it is -7 N"));
 }
 
+/// A file of a contact that a sine moves, with noise of the force.
+io::RecordFile SineFile(const char* model, const models::BranchLaw& law, double amplitude,
+                        const testing::History& sine, double noise, Generator& generator) {
+  io::RecordFile file;
+  for (const double x : sine) {
+    file.record.displacement.push_back(amplitude * x);
+    file.lines.push_back(file.lines.size() + 2);
+  }
+  file.record.force = testing::Respond(testing::Model(model), law, file.record.displacement);
+  for (double& force : file.record.force) force += noise * testing::Normal(generator);
+  return file;
+}
+
 /// Sine cycles of a contact at which a force is added, in files a.csv, b.csv, …
 report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitRequest& request,
                         const std::function<double(double)>& distort = std::identity()) {
   std::vector<io::RecordFile> files;
   for (const models::BranchLaw& law : laws) {
-    io::RecordFile& file = files.emplace_back();
-    for (const double sine : testing::Sine(3, 100)) file.record.displacement.push_back(2e-6 * sine);
-    file.record.force =
-        testing::Respond(testing::Model("mindlin-dahl"), law, file.record.displacement);
-    for (double& x : file.record.displacement) x = distort(x);
     Generator generator(4);
-    for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
-    for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
+    io::RecordFile& file = files.emplace_back(
+        SineFile("mindlin-dahl", law, 2e-6, testing::Sine(3, 100), 0.1, generator));
+    for (double& x : file.record.displacement) x = distort(x);
     file.name = std::string(1, static_cast<char>('a' + files.size() - 1)) + ".csv";
   }
   return FitRecords(request, std::move(files));
@@ -66,13 +75,9 @@ report::Report FitLoops(const std::vector<models::BranchLaw>& laws, const FitReq
 
 /// A loop of Dahl's own law has no asymmetry by its own law, and one of 0.7 by Masing's.
 TEST(FitRecords, ChoosesTheLawWithoutAnAsymmetryBesideWhichLawsAreNotCompared) {
-  io::RecordFile file;
-  for (const double sine : testing::Sine(4, 120)) file.record.displacement.push_back(6e-7 * sine);
-  file.record.force =
-      testing::Respond(testing::Model("dahl"), {4.8e7, 1.5, 15.0}, file.record.displacement);
   Generator generator(4);
-  for (double& force : file.record.force) force += 0.04 * testing::Normal(generator);
-  for (std::size_t i = 0; i < file.record.size(); ++i) file.lines.push_back(i + 2);
+  const io::RecordFile file =
+      SineFile("dahl", {4.8e7, 1.5, 15.0}, 6e-7, testing::Sine(4, 120), 0.04, generator);
   FitRequest request;
   request.fit.terms = {"asymmetry"};
   const identification::FitResult fit = FitRecords(request, {file}).fit;
@@ -92,16 +97,13 @@ TEST(NextStep, IsNoneWhereACauseWithoutATermSeemsToDescribeTheRecordAsWell) {
 }
 
 TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
-  io::RecordFile file;
-  for (const double sine : testing::Sine(3, 200)) file.record.displacement.push_back(4e-6 * sine);
-  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
-                                       file.record.displacement);
   Generator generator(4);
+  io::RecordFile file =
+      SineFile("mindlin-dahl", {4e7, 1.0 / 3, 40.0}, 4e-6, testing::Sine(3, 200), 0.1, generator);
   for (std::size_t i = 0; i < file.record.size(); ++i) {
     const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
-    file.record.force[i] += 2 * std::cos(phase) + 0.1 * testing::Normal(generator);
+    file.record.force[i] += 2 * std::cos(phase);
     file.record.time.push_back(0.005 * static_cast<double>(i));
-    file.lines.push_back(i + 2);
   }
   const report::Report made = FitRecords({}, {file});
   EXPECT_GT(*made.fit.Find("slip_force")->lower95, 40.3) << "with the force of the velocity";
@@ -112,15 +114,9 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
 
 TEST(NextStep, IsAFitOfTheDisplacementThatACoarseEncoderReads) {
   constexpr double kAmplitude = 2.4e-6;  // 0.8 of gross slip
-  io::RecordFile file;
-  for (const double sine : testing::Sine(1.5, 400)) {
-    file.record.displacement.push_back(kAmplitude * sine);
-    file.lines.push_back(file.lines.size() + 2);
-  }
-  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 80.0},
-                                       file.record.displacement);
   Generator generator(4);
-  for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
+  io::RecordFile file = SineFile("mindlin-dahl", {4e7, 1.0 / 3, 80.0}, kAmplitude,
+                                 testing::Sine(1.5, 400), 0.1, generator);
   constexpr double kStep = kAmplitude / 5;
   for (double& x : file.record.displacement) {
     x = kStep * std::round(x / kStep + 0.15 * testing::Normal(generator));  // one count flickers
@@ -139,15 +135,9 @@ TEST(NextStep, IsAFitOfTheDisplacementThatACoarseEncoderReads) {
 TEST(NextStep, IsNoneOfAnEncoderOfFewStepsWhereTheLoopSlides) {
   // The force says nothing of the displacement there, and no term describes steps.
   constexpr double kAmplitude = 1.5e-6;
-  io::RecordFile file;
-  for (const double sine : testing::Sine(4, 120)) {
-    file.record.displacement.push_back(kAmplitude * sine);
-    file.lines.push_back(file.lines.size() + 2);
-  }
-  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4.8e7, 1.0 / 3, 15.0},
-                                       file.record.displacement);
   Generator generator(4);
-  for (double& force : file.record.force) force += 0.04 * testing::Normal(generator);
+  io::RecordFile file = SineFile("mindlin-dahl", {4.8e7, 1.0 / 3, 15.0}, kAmplitude,
+                                 testing::Sine(4, 120), 0.04, generator);
   file.record.displacement = testing::Quantised(file.record.displacement, kAmplitude / 3.5);
   const report::Report made = FitRecords({}, {file});
   EXPECT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
