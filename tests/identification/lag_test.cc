@@ -88,6 +88,16 @@ TEST(Lag, IsRecoveredOfASteadyLoopThatBeginsAnywhere) {
   }
 }
 
+TEST(Lag, IsFittedOfARecordInWhichARowIsRepeated) {
+  const BranchLaw law = LawOf(1.0 / 3);
+  Record record = LateRecord(law, TimesOf(2.25), 1.7 * kStep);
+  for (auto* const column : {&record.time, &record.displacement, &record.force}) {
+    column->insert(column->begin() + 99, (*column)[99]);
+  }
+  const FitResult fit = FitOne(record, {.terms = {"lag"}});
+  EXPECT_NEAR(fit.Find("lag")->value, 1.7 * kStep, 0.1 * kStep);
+}
+
 TEST(Lag, IsCountedInSamplesWhereTheRecordHasNoTime) {
   const BranchLaw law = LawOf(1.0 / 3);
   Record record = LateRecord(law, TimesOf(2.25), 1.7 * kStep);

@@ -87,8 +87,8 @@ double PositionBetween(const ScaledRecord& motion, std::size_t next, double time
   if (!motion.turns_between || next < 2 || next + 1 >= x.size()) return straight;
   const double before = (velocity(next) - velocity(next - 1)) / (t[next] - t[next - 2]);
   const double after = (velocity(next + 1) - velocity(next)) / (t[next + 1] - t[next - 1]);
+  if (!std::isfinite(before) || !std::isfinite(after)) return straight;  // a repeated row
   const double most = 2 * std::min(std::abs(before), std::abs(after));
-  if (!std::isfinite(most)) return straight;
   const double half_curvature =
       std::lerp(std::clamp(before, -most, most), std::clamp(after, -most, most),
                 (time - t[next - 2]) / (t[next + 1] - t[next - 2]));
