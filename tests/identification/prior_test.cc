@@ -45,6 +45,23 @@ Combined Combine(double value, double error, const Prior& prior) {
   return {(reading * value + before * prior.value) / (reading + before), 1 / (reading + before)};
 }
 
+/// What repeats in every cycle widens what the record says, and not what the prior does.
+TEST(Prior, KeepsItsUncertaintyBesideAMisfitThatRepeats) {
+  const testing::History displacement = Cycling(Wave::kSine, 1.5 * testing::kReach, 20.0, 100);
+  Generator generator(7);
+  Record record = WithForceNoise(LoopOf(kLaw, displacement), kNoise * kLaw.slip_force, generator);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] +=
+        0.03 * kLaw.slip_force * std::sin(2 * 3.14159 * displacement[i] / (0.5 * testing::kReach));
+  }
+  for (const double uncertainty : {1e-4, 1e-5}) {  // less than what the record says
+    const FitResult fit =
+        FitOne(record, {.priors = {{"alpha", {kLaw.shape_exponent, uncertainty}}}});
+    EXPECT_GT(fit.records[0].structure.Widening(), 3.0);
+    EXPECT_LE(*fit.Find("alpha")->standard_error, 1.1 * uncertainty);
+  }
+}
+
 /// A prior two standard errors off, as sharp as the record: value and error are those of two normal
 /// laws, for law, linear and nonlinear terms alike. Steps are 1 % at most of a parameter, the
 /// parabola's third-order term as much of the step.

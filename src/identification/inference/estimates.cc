@@ -100,7 +100,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
       determined_(problem.parameters.free().size(), true) {
   const std::vector<std::size_t>& free = problem.parameters.free();
   if (free.empty()) return;
-  // A prior is one more reading, with the noise of the others.
+  // A prior is one more reading, weighted by the noise of the others.
   Eigen::VectorXd weights(std::ssize(free));
   std::ranges::transform(free, weights.begin(),
                          [&](std::size_t p) { return problem.parameters[p].prior_root_weight; });
@@ -111,8 +111,17 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
   // inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
   Eigen::MatrixXd product =
       noise.Product(problem.data->records, noise.autocorrelation, at_.jacobian * directions);
-  const double by_fit = product.trace();
-  product += (priors * directions).transpose() * (priors * directions);
+  // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
+  // than the noise's variance; beyond most_absorbed no more is corrected.
+  if (!noise.is_known && noise.drawn.size() == 0) {
+    const auto count = static_cast<double>(noise.samples);
+    const auto parameters = static_cast<double>(free.size());
+    const double absorbed = std::min(product.trace(), options.thresholds.most_absorbed * count);
+    if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
+  }
+  // Its own uncertainty is what is given, whatever the residuals are.
+  const Eigen::MatrixXd of_priors = problem.data->prior_noise * priors * directions;
+  product += of_priors.transpose() * of_priors / variance_;
   // Without what rounding leaves below zero.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(product);
   const Eigen::MatrixXd root = directions * pairs.eigenvectors() *
@@ -120,13 +129,6 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
   // Element by element: symmetric to the last bit.
   factor_ = root.lazyProduct(root.transpose());
   white_factor_ = directions.lazyProduct(directions.transpose());
-  // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
-  // than the noise's variance; beyond most_absorbed no more is corrected.
-  if (noise.is_known || noise.drawn.size() > 0) return;
-  const auto count = static_cast<double>(noise.samples);
-  const auto parameters = static_cast<double>(free.size());
-  const double absorbed = std::min(by_fit, options.thresholds.most_absorbed * count);
-  if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
 }
 
 std::optional<Eigen::Index> Estimates::PlaceOf(std::size_t parameter) const {
