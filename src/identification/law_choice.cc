@@ -19,7 +19,7 @@ using models::InitialState;
 using models::Memory;
 
 /// True if the two laws can have a σ and a Tc of their own: not before the motion turns; σ and Tc
-/// that the user holds are of one law only.
+/// that the user holds, or bounds where the fit comes to lie, are of one law only.
 bool AreComparable(const FitOptions& options, const ScaledRecords& data, const FitResult& fit) {
   if (fit.law.shape_exponent <= options.thresholds.jenkins_shape) return false;
   // Dahl's own law does not model a load that varies, and slip forces that differ it models by
@@ -27,7 +27,8 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   if (data.load_varies || fit.Find("asymmetry") != nullptr) return false;
   if (std::ranges::none_of(data.records, &ScaledRecord::Turns)) return false;
   return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {
-    return options.fixed.contains(name) || options.bounds.contains(name);
+    return options.fixed.contains(name) ||
+           (options.bounds.contains(name) && fit.Find(name)->is_at_bound());
   });
 }
 

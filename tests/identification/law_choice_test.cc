@@ -193,6 +193,12 @@ TEST(LawChoice, IsNoneWhereTheLawsAreOneOrAParameterIsHeld) {
   EXPECT_FALSE(Fit({&record, 1}, {}, Depth::kIntervals).law_choice) << "not asked for";
 }
 
+TEST(LawChoice, IsMadeWithinABoundThatExcludesNothing) {
+  const FitResult fit = FitOne(Noisy(Virgin("dahl")), {.bounds = {{"sigma", {1e5, 1e10}}}});
+  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided);
+  EXPECT_EQ(fit.law_choice->preferred->name, "dahl");
+}
+
 TEST(LawChoice, OfAnEncodersRecordIsNotThatOfItsSteepBranches) {
   // Ten steps an amplitude: before residuals were weighted five of forty such loops were Dahl's
   // own.
