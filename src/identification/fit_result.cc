@@ -1,5 +1,7 @@
 #include "mindahl/identification/fit_result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +21,11 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
                                       std::string_view name) {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
   return found == parameters.end() ? nullptr : &*found;
+}
+
+const ParameterEstimate* FitResult::FindOf(const RecordFit& record, std::string_view name) const {
+  const auto place = &record - records.data();
+  return records.size() == 1 ? Find(name) : Find(fmt::format("{}_{}", name, place + 1));
 }
 
 const Finding* FitResult::FindFinding(FindingCode code, std::string_view kind) const {

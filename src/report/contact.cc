@@ -92,14 +92,17 @@ constexpr std::array kQuantities = {
 /// False where a loop that slides measures another force in that direction: then the asymmetry and
 /// the offset of the force stand for each other.
 bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
-  const loop::LoopFacts& facts = fit.WidestRecord().facts;
-  if (!loop::Slides(facts) || !facts.half_gap || facts.cycles.empty()) return true;
+  const RecordFit& record = fit.WidestRecord();
+  const loop::LoopFacts& facts = record.facts;
+  if (!loop::Slides(facts) || facts.cycles.empty()) return true;
   double centre = 0.0;
   for (const loop::CycleFacts& cycle : facts.cycles) centre += cycle.centre_force.value_or(0.0);
   centre /= static_cast<double>(facts.cycles.size());
-  const double plateau = std::abs(*facts.half_gap) + sense * centre;
+  const ParameterEstimate* zero = fit.FindOf(record, "force_offset");
+  if (zero != nullptr) centre -= fit.force_sense * zero->value;
+  const double plateau = *facts.half_gap + sense * centre;
   return std::abs(slip_force - plateau) <
-         identification::Thresholds().off_plateau * std::abs(*facts.half_gap);
+         identification::Thresholds().off_plateau * *facts.half_gap;
 }
 
 /// Returns a quantity with the force at which the contact slips in one direction, Tc(1 ± A).

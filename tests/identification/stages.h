@@ -159,6 +159,7 @@ inline identification::FitResult MadeFit(double peak_force) {
   identification::FitResult result;
   result.law = {1e7, 0.4, 10.0};
   result.residuals.r_squared = 0.99;
+  result.degrees_of_freedom = 1e6;
   for (const char* name : {"sigma", "alpha", "slip_force"}) {
     identification::ParameterEstimate& estimate = result.parameters.emplace_back();
     estimate.name = name;

@@ -132,6 +132,10 @@ TEST(DescribeContact, GivesNoSlipForceThatThePlateausContradict) {
   EXPECT_FALSE(Of(DescribeContact(fit, {}), "slip_force_positive").value);
   facts.cycles[0].centre_force = 0.5 * kSlipForce;
   EXPECT_TRUE(Of(DescribeContact(fit, {}), "slip_force_positive").value);
+  // The plateaus are those of the contact: less the offset of the sensor.
+  testing::AddParameter(fit, "force_offset", "N", 3 * kSlipForce, 0.05);
+  facts.cycles[0].centre_force = 3.5 * kSlipForce;
+  EXPECT_TRUE(Of(DescribeContact(fit, {}), "slip_force_positive").value);
 }
 
 TEST(TestAlpha, RejectsAThirdOutsideTheIntervalAlone) {

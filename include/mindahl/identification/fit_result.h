@@ -151,6 +151,10 @@ struct FitResult {
     return FindEstimate(parameters, name);
   }
 
+  /// Returns a parameter of one of the records, nullptr when there is none.
+  [[nodiscard]] const ParameterEstimate* FindOf(const RecordFit& record,
+                                                std::string_view name) const;
+
   /// Returns nullptr when nothing of the code, or of its kind if one is given, was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code, std::string_view kind = {}) const;
 

@@ -129,7 +129,8 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
   // What is known does not depend on the confidence that is asked for.
-  const double to_95 = NormalQuantile(0.95) / NormalQuantile(result.confidence);
+  const double to_95 = StudentQuantile(result.degrees_of_freedom, 0.95) /
+                       StudentQuantile(result.degrees_of_freedom, result.confidence);
   for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
@@ -215,12 +216,11 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
                         result.initial_state == models::InitialState::kSteady &&
                         result.model->memory != models::Memory::kNone;
   if (!is_asked) return std::nullopt;
-  for (std::size_t r = 0; r < result.records.size(); ++r) {
-    const ParameterEstimate* zero = result.Find(
-        result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1));
+  for (const RecordFit& record : result.records) {
+    const ParameterEstimate* zero = result.FindOf(record, "force_offset");
     const bool is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
-    const models::BranchLaw law = result.LawOf(result.records[r]);
-    const double amplitude = ContactAmplitude(result, law, result.records[r].facts.amplitude);
+    const models::BranchLaw law = result.LawOf(record);
+    const double amplitude = ContactAmplitude(result, law, record.facts.amplitude);
     const double peak_force = models::SteadyPeakForce(*result.model, law, amplitude);
     if (!is_known || peak_force >= (1 - thresholds.never_slips) * law.slip_force) continue;
     return Finding{.code = "not_identifiable", .parameters = {"asymmetry"}, .kind = "below_slip"};
