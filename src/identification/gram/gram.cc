@@ -55,7 +55,7 @@ Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
   }
   law_noise_ = inverse_of_law_;
   free_noise_ = free_;
-  absorbed_ = static_cast<double>(j.cols());
+  absorbed_ = (inverse_of_law_ * of_law).trace();
 }
 
 void Gram::SetNoise(Eigen::MatrixXd products) {
