@@ -47,8 +47,9 @@ struct [[gnu::visibility("default")]] CeresParameter {
 ///     ceres::Solve(solver_options, &problem, &summary);
 ///     contact.Find("sigma").Value();
 ///
-/// Without residuals of one's own its minimum is the fit's. Turning points that the fit found
-/// between samples, weights of noisy displacements and those of a robust loss are not part of it;
+/// Without residuals of one's own its minimum is the fit's. Priors of the options, turning points
+/// that the fit found between samples, weights of noisy displacements and those of a robust loss
+/// are not part of it;
 /// a robust loss is given to AddTo(), which applies it to each sample.
 class [[gnu::visibility("default")]] CeresProblem {
  public:
