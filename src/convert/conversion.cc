@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <variant>
 
 #include "mindahl/core/error.h"
@@ -93,25 +96,67 @@ SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& opt
   return ModelLaw{&masing, SamePeakAndEnergy(contact, amplitude, masing, 0.0)};
 }
 
-/// Finds where the error passes the tolerance, from X on in steps of a factor that grows or falls.
-template <typename IsWithin>
-double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
+/// Returns the amplitudes [m] at which the error is looked at, in order from X to a hundred times
+/// as much and from X to a hundredth. Where two loops bend elsewhere, the error has a lobe from one
+/// corner to the next: the corners are among the places, and kBetween between any two of them.
+std::array<std::vector<double>, 2> PlacesAround(double amplitude, std::span<const double> corners) {
+  constexpr double kReach = 100.0;
   constexpr int kSteps = 20;
-  constexpr int kHalvings = 10;
-  double inside = amplitude;
-  for (int i = 0; i < kSteps; ++i) {
-    double outside = inside * factor;
-    if (is_within(outside)) {
-      inside = outside;
-      continue;
+  constexpr int kBetween = 3;
+  constexpr double kClosest = 5e-3;  // of a corner to the place before it, relative
+  std::vector<double> steps = {amplitude};
+  for (int i = 1; i <= kSteps; ++i) {
+    const double factor = std::pow(kReach, static_cast<double>(i) / kSteps);
+    steps.push_back(amplitude * factor);
+    steps.push_back(amplitude / factor);
+  }
+  for (const double corner : corners) {
+    if (std::max(corner / amplitude, amplitude / corner) < kReach) steps.push_back(corner);
+  }
+  std::array<std::vector<double>, 2> places;
+  for (std::vector<double>& way : places) {
+    const bool is_up = &way == &places.front();
+    is_up ? std::ranges::sort(steps) : std::ranges::sort(steps, std::greater<>());
+    way.push_back(amplitude);
+    for (const double step : steps) {
+      const double last = way.back();
+      if (is_up ? step < last * (1 + kClosest) : step > last / (1 + kClosest)) continue;
+      for (int j = 1; j <= kBetween + 1; ++j) {
+        way.push_back(std::lerp(last, step, static_cast<double>(j) / (kBetween + 1)));
+      }
     }
+  }
+  return places;
+}
+
+/// Returns the last amplitude from X on up to which an error is within the tolerance, also at its
+/// largest between the places.
+template <typename Error>
+double EdgeOf(const Error& error, double tolerance, std::span<const double> places) {
+  constexpr int kHalvings = 10;
+  constexpr int kBits = 16;
+  constexpr double kNear = 0.5;  // of the tolerance: a lobe below has none that passes it
+  const auto edge_between = [&](double inside, double outside) {
     for (int j = 0; j < kHalvings; ++j) {
-      const double middle = std::sqrt(inside * outside);
-      (is_within(middle) ? inside : outside) = middle;
+      const double middle = std::midpoint(inside, outside);
+      (error(middle) <= tolerance ? inside : outside) = middle;
     }
     return inside;
+  };
+  std::array errors = {0.0, error(places[0])};  // at the last two places
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    const double next = error(places[k]);
+    if (next > tolerance) return edge_between(places[k - 1], places[k]);
+    if (errors[1] >= std::max({errors[0], next, kNear * tolerance})) {
+      const double before = places[k > 1 ? k - 2 : 0];
+      const auto between = [&](double part) { return std::lerp(before, places[k], part); };
+      const auto [part, negative] = boost::math::tools::brent_find_minima(
+          [&](double at) { return -error(between(at)); }, 0.0, 1.0, kBits);
+      if (-negative > tolerance) return edge_between(before, between(part));
+    }
+    errors = {errors[1], next};
   }
-  return inside;
+  return places.back();
 }
 
 /// Returns the values of a law that are known, by their keys.
@@ -187,14 +232,19 @@ Conversion Convert(const ModelLaw& contact, const TargetRow& target,
   Conversion conversion;
   conversion.law = LawOf(contact, target.form, options);
   conversion.at_amplitude = CompareLoops(conversion.law, contact, options.amplitude);
-  const auto is_within = [&](double amplitude) {
-    const LoopError error = CompareLoops(conversion.law, contact, amplitude);
-    return error.force <= options.tolerance && std::abs(error.energy) <= options.tolerance;
+  const auto error = [&](double amplitude) {
+    const LoopError at = CompareLoops(conversion.law, contact, amplitude);
+    return std::max(at.force, std::abs(at.energy));
   };
-  if (is_within(options.amplitude)) {
-    const double step = std::pow(10.0, 0.1);  // 20 of them: two decades
-    conversion.within = {EdgeOf(is_within, options.amplitude, 1 / step),
-                         EdgeOf(is_within, options.amplitude, step)};
+  if (error(options.amplitude) <= options.tolerance) {
+    std::vector<double> corners = LoopOf(conversion.law, options.amplitude).corners;
+    const std::vector<double> own = LoopOf(contact, options.amplitude).corners;
+    corners.insert(corners.end(), own.begin(), own.end());
+    // An element slips from the amplitude on at which the whole branch, of 2X, is as long.
+    for (double& corner : corners) corner /= 2;
+    const auto [up, down] = PlacesAround(options.amplitude, corners);
+    conversion.within = {EdgeOf(error, options.tolerance, down),
+                         EdgeOf(error, options.tolerance, up)};
   }
   const std::map<std::string_view, double> values = ValuesOf(conversion.law, options);
   for (const ParameterRow& row : target.parameters) {

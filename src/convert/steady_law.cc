@@ -84,15 +84,6 @@ class BoucWenBranch {
   BoucWenLaw law_;
 };
 
-/// Virgin curve of elements.
-double VirginForce(const IwanElements& elements, double x) {
-  double force = 0.0;
-  for (std::size_t j = 0; j < elements.size(); ++j) {
-    force += std::min(elements.stiffness[j] * x, elements.slip_force[j]);
-  }
-  return force;
-}
-
 SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
   const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
   const double share = peak / of.law.slip_force;
@@ -124,16 +115,50 @@ SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
           }};
 }
 
+/// Virgin curve of Jenkins elements: a polygon through its corners.
+class Polygon {
+ public:
+  explicit Polygon(const IwanElements& elements) {
+    std::vector<std::size_t> order(elements.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto stick = [&](std::size_t j) {
+      return elements.slip_force[j] / elements.stiffness[j];
+    };
+    std::ranges::sort(order, {}, stick);
+    slope_.assign(order.size() + 1, 0.0);
+    sliding_ = slope_;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      corners_.push_back(stick(order[i]));
+      sliding_[i + 1] = sliding_[i] + elements.slip_force[order[i]];
+    }
+    for (std::size_t i = order.size(); i-- > 0;) {
+      slope_[i] = slope_[i + 1] + elements.stiffness[order[i]];
+    }
+  }
+
+  [[nodiscard]] double Force(double x) const {
+    const auto slid =
+        static_cast<std::size_t>(std::ranges::lower_bound(corners_, x) - corners_.begin());
+    return sliding_[slid] + slope_[slid] * x;
+  }
+
+ private:
+  std::vector<double> corners_;  // displacements at which an element slips, ascending
+  // Of so many elements that slip: stiffness of the others, and the force of these.
+  std::vector<double> slope_;
+  std::vector<double> sliding_;
+};
+
 SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
-  SteadyLoop loop{
-      .peak = VirginForce(elements, amplitude), .energy = 0.0, .corners = {}, .force = {}};
+  Polygon virgin(elements);
+  SteadyLoop loop{.peak = virgin.Force(amplitude), .energy = 0.0, .corners = {}, .force = {}};
   for (std::size_t j = 0; j < elements.size(); ++j) {
     const double stick = elements.slip_force[j] / elements.stiffness[j];
     loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - stick, 0.0);
     loop.corners.push_back(2 * stick);
   }
-  loop.force = [elements, peak = loop.peak](double distance) {
-    return 2 * VirginForce(elements, distance / 2) - peak;
+  loop.force = [virgin = std::move(virgin), peak = loop.peak](double distance) {
+    return 2 * virgin.Force(distance / 2) - peak;
   };
   return loop;
 }

@@ -59,8 +59,8 @@ struct Parameter {
 struct Conversion {
   SteadyLaw law;
   LoopError at_amplitude;  ///< at X
-  /// Least and largest amplitude [m] around X at which force and energy are within the tolerance,
-  /// looked for from X/100 to 100·X; empty where X itself is not.
+  /// Least and largest amplitude [m] around X between which force and energy are within the
+  /// tolerance, looked for from X/100 to 100·X; empty where X itself is not.
   std::optional<std::pair<double, double>> within = std::nullopt;
   std::vector<Parameter> parameters = {};  ///< in the target's own names and units
   /// Lines that the target reads; none of LAMMPS without a normal load.
@@ -76,7 +76,7 @@ struct Conversion {
 /// @param contact  Masing's law (mindlin-dahl) or dahl
 /// @throws InvalidArgument for an invalid law or option, InputError for a normal load that the
 ///   target does not use
-/// Cost: some 10 ms, of Bouc's and Wen's law some 0.5 s.
+/// Cost: some 10 ms to 0.2 s; of a hundred elements some 0.3 s.
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options);
 
