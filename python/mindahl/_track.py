@@ -41,7 +41,7 @@ class CycleTable(Told, Table):
             name, _, unit = name.partition(" [")
             if unit:
                 self.units[name] = unit[:-1]
-            if name in ("cycle", "first_line", "samples"):
+            if name in ("cycle", "first_line", "samples", "cycles"):
                 self._columns[name] = np.array(cells, dtype=np.int64)
             elif name == "flags":
                 self._columns[name] = np.array(cells, dtype=str)
@@ -55,7 +55,7 @@ def track(source: Any = None, force: Any = None, *, average: int = 1,
 
     source, force: as of fit(). A file is read piece by piece, in constant memory; a list of sources is
         one test in this order, and no cycle extends over two sources.
-    average: number of consecutive cycles that are fitted together.
+    average: number of consecutive cycles that are fitted together, fewer at the end of a source.
     threads: number of workers; default one per core. executor: where the test is tracked instead of
         here, as of batch(): what it gives back is pickled.
     keywords: of fit(), but for single cycles' covariates, trim and selections. terms: "auto" chooses by

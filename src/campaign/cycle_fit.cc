@@ -104,7 +104,10 @@ CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
 
 CycleFit CycleFitter::Fit(const Cycle& cycle) {
   const loop::Record& record = cycle.record;
-  CycleFit fit{.number = cycle.number, .first_line = cycle.first_line, .samples = record.size()};
+  CycleFit fit{.number = cycle.number,
+               .first_line = cycle.first_line,
+               .samples = record.size(),
+               .cycles = cycle.cycles};
   if (!record.time.empty()) fit["start_time"] = record.time.front();
   const std::vector<double>& given = fitter_.options().normal_loads;
   if (!given.empty()) {
@@ -142,7 +145,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
 }
 
 std::string CycleTableHeader(bool is_torsional) {
-  std::string header = "cycle,first_line,samples";
+  std::string header = "cycle,first_line,samples,cycles";
   for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
     header += ',' + report::WithUnit(column.name, is_torsional ? report::UnitOfTorque(column.unit)
                                                                : std::string(column.unit));
@@ -153,7 +156,7 @@ std::string CycleTableHeader(bool is_torsional) {
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
   fmt::memory_buffer row;
   const auto end = std::back_inserter(row);
-  fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
+  fmt::format_to(end, "{},{},{},{}", fit.number, fit.first_line, fit.samples, fit.cycles);
   for (const auto& number : std::span(fit.numbers).first(CountOfNumbers(is_torsional))) {
     row.push_back(',');
     if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
@@ -165,16 +168,19 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
 CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
   const std::size_t numbers = CountOfNumbers(is_torsional);
-  // cycle, first_line, samples; the numbers; accumulated_energy, flags.
-  const std::size_t columns = 3 + numbers + 2;
+  // cycle, first_line, samples, cycles; the numbers; accumulated_energy, flags.
+  constexpr std::size_t kCounts = 4;
+  const std::size_t columns = kCounts + numbers + 2;
   if (cells.size() != columns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
   CycleFit fit{.number = CellValue<std::size_t>(cells[0]),
                .first_line = CellValue<std::size_t>(cells[1]),
-               .samples = CellValue<std::size_t>(cells[2])};
+               .samples = CellValue<std::size_t>(cells[2]),
+               .cycles = CellValue<std::size_t>(cells[3])};
   for (std::size_t k = 0; k < numbers; ++k) {
-    if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
+    const std::string_view cell = cells[kCounts + k];
+    if (!cell.empty()) fit.numbers.at(k) = CellValue<double>(cell);
   }
   if (const std::string_view flags = cells[columns - 1]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);

@@ -35,7 +35,7 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
                         std::vector<Cycle>& cycles) {
   Append(samples, lines, kept_);
   for (const double displacement : samples.displacement) {
-    if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Complete(*turn, cycles);
+    if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Turn(*turn, cycles);
   }
   const auto end = static_cast<std::ptrdiff_t>(begin_);
   const auto erase_before = [end](auto& values) {
@@ -43,6 +43,7 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   };
   for (const auto column : loop::kRecordColumns) erase_before(kept_.*column);
   erase_before(kept_.lines);
+  end_ -= begin_;
   dropped_ += std::exchange(begin_, 0);
   if (kept_.size() > kMostSamples) {
     throw InvalidArgument(
@@ -52,32 +53,37 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   }
 }
 
-void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycles) {
+void CycleSplitter::Turn(std::size_t turning_point, std::vector<Cycle>& cycles) {
   const std::size_t turn = turning_point - dropped_;
   if (turns_ == 0) begin_ = turn;
-  if (turns_ < 2 * together_) {
-    ++turns_;
-    return;
-  }
-  Cycle& cycle = cycles.emplace_back(
-      Cycle{.number = cycles_ + 1, .first_line = kept_.lines[begin_], .record = {}});
+  if (turns_ % 2 == 0) end_ = turn;
+  if (turns_++ == 2 * together_) TakeOff(cycles);
+}
+
+/// Appends the whole cycles of the piece.
+void CycleSplitter::TakeOff(std::vector<Cycle>& cycles) {
+  const std::size_t count = (turns_ - 1) / 2;
+  Cycle& cycle = cycles.emplace_back(Cycle{
+      .number = cycles_ + 1, .cycles = count, .first_line = kept_.lines[begin_], .record = {}});
   for (const auto column : loop::kRecordColumns) {
     const std::span<const double> values = kept_.*column;
     if (values.empty()) continue;
-    const auto own = values.subspan(begin_, turn + 1 - begin_);
+    const auto own = values.subspan(begin_, end_ + 1 - begin_);
     (cycle.record.*column).assign(own.begin(), own.end());
   }
-  cycles_ += together_;
-  begin_ = turn;
+  cycles_ += count;
+  begin_ = end_;
   turns_ = 1;
 }
 
-std::size_t CycleSplitter::Restart() {
-  const std::size_t left = kept_.size();
+std::size_t CycleSplitter::Restart(std::vector<Cycle>& cycles) {
+  if (turns_ >= 3) TakeOff(cycles);
+  const std::size_t left = kept_.size() - begin_;
   kept_ = {};
   finder_ = loop::ReversalFinder(gate_);
   dropped_ = 0;
   begin_ = 0;
+  end_ = 0;
   turns_ = 0;
   return left;
 }

@@ -18,6 +18,18 @@ Tracker::Tracker(TrackOptions options, Done done)
 void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
   cycles_.clear();
   splitter_.Add(samples, lines, cycles_);
+  Take();
+}
+
+std::size_t Tracker::NextFile() {
+  cycles_.clear();
+  const std::size_t left = splitter_.Restart(cycles_);
+  Take();
+  return left;
+}
+
+/// Begins to fit the cycles that were split off at last.
+void Tracker::Take() {
   for (Cycle& cycle : cycles_) {
     Log(cycle);
     if (fits_++ < options_.skipped) continue;

@@ -40,7 +40,6 @@ struct TrackedTest {
   loop::ReversalGate gate = {};
   std::size_t fits = 0;
   std::map<std::string, std::size_t, std::less<>> flags = {};  // how many fits have each
-  std::size_t together = 1;                                    // cycles of a fit
   double energy = 0.0;                                         // [J] dissipated
   std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
   std::vector<Evolution> evolutions = {};
@@ -50,7 +49,7 @@ struct TrackedTest {
   void Add(const CycleFit& fit) {
     // The work of a cycle that does not close is not all dissipated.
     const bool is_loop = !fit.HasFlag("not_closed") && !fit.HasFlag("rows_missing");
-    if (is_loop) energy += static_cast<double>(together) * fit["energy"].value_or(0.0);
+    if (is_loop) energy += static_cast<double>(fit.cycles) * fit["energy"].value_or(0.0);
     ++fits;
     for (const std::string& flag : fit.flags) ++flags[flag];
     campaign::AddTo(evolutions, fit);
@@ -177,7 +176,7 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
 class TrackRun {
  public:
   explicit TrackRun(const TrackCommandOptions& options)
-      : options_(options), test_{.output = options.output, .together = options.track.together} {}
+      : options_(options), test_{.output = options.output} {}
 
   /// @throws InputError naming the place in a file; the batches before it are in the table
   TrackedTest Track() {
@@ -360,7 +359,8 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddContactOptions(command, options.fit.contact);
   const OptionGroup cycles(command, "Cycles");
   cycles.AddCount("--average", options.track.together,
-                  "number of consecutive cycles that are fitted together", 1, 1'000'000);
+                  "number of consecutive cycles that are fitted together, fewer at a file's end", 1,
+                  1'000'000);
   cycles.AddChoice("--broken-rows", options.fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "rows without a number in a needed column; skip counts them");

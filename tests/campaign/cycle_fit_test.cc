@@ -256,6 +256,7 @@ CycleFit Filled(const std::function<double()>& next) {
   fit.number = 17;
   fit.first_line = 3402;
   fit.samples = 201;
+  fit.cycles = 5;
   for (std::optional<double>& number : fit.numbers) number = next();
   fit.flags = {"glitches", "alpha_open"};
   return fit;
@@ -281,7 +282,7 @@ TEST(CycleTable, LeavesUnknownCellsEmpty) {
   CycleFit fit;
   fit.number = 3;
   const std::string row = CycleTableRow(fit, 0.0);
-  EXPECT_TRUE(row.starts_with("3,0,0,,,")) << row;
+  EXPECT_TRUE(row.starts_with("3,0,0,1,,,")) << row;
   EXPECT_TRUE(row.ends_with(",0,\n")) << row;
   EXPECT_EQ(CycleTableRow(ReadCycleTableRow(WithoutEnd(row)), 0.0), row);
 }
@@ -295,14 +296,14 @@ TEST(CycleTable, RefusesMalformedRow) {
 
 TEST(CycleTable, HasEachNumberInItsColumn) {
   EXPECT_EQ(CycleTableHeader(false),
-            "cycle,first_line,samples,start_time [s],amplitude [m],peak_force [N],"
+            "cycle,first_line,samples,cycles,start_time [s],amplitude [m],peak_force [N],"
             "sliding_amplitude [m],half_gap [N],energy [J],energy_ratio,"
             "energy_friction_coefficient,normal_load [N],sigma [N/m],"
             "sigma_error [N/m],alpha,alpha_error,slip_force [N],slip_force_error [N],"
             "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,"
             "contact_radius [m],accumulated_energy [J],flags\n");
   EXPECT_EQ(CycleTableHeader(true),
-            "cycle,first_line,samples,start_time [s],amplitude [rad],peak_force [N m],"
+            "cycle,first_line,samples,cycles,start_time [s],amplitude [rad],peak_force [N m],"
             "sliding_amplitude [rad],half_gap [N m],energy [J],energy_ratio,"
             "energy_friction_coefficient,normal_load [N m],"
             "sigma [N m/rad],sigma_error [N m/rad],alpha,alpha_error,slip_force [N m],"
@@ -311,10 +312,10 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
   double next = 0.5;
   CycleFit fit = Filled([&] { return next += 1; });
   EXPECT_EQ(CycleTableRow(fit, 21.5),
-            "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
+            "17,3402,201,5,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
             "16.5,17.5,18.5,19.5,20.5,21.5,glitches alpha_open\n");
   EXPECT_EQ(CycleTableRow(fit, 21.5, /*is_torsional=*/true),
-            "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
+            "17,3402,201,5,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,"
             "16.5,17.5,18.5,19.5,21.5,glitches alpha_open\n");
 }
 

@@ -69,6 +69,30 @@ TEST(CycleSplitter, KeepsSeveralCyclesTogether) {
   EXPECT_EQ(cycles[0].number, 1U);
   EXPECT_EQ(cycles[1].number, 4U);
   EXPECT_EQ(cycles[1].record.size(), 3 * kCycleSamples + 1);
+  EXPECT_EQ(cycles[1].cycles, 3U);
+}
+
+TEST(CycleSplitter, GivesTheWholeCyclesThatFillNoPieceAtTheEnd) {
+  const loop::Record record = TestRecord(9);  // 8 whole ones, and a part
+  const std::vector<std::size_t> lines = LinesOf(record);
+  const std::vector<Cycle> single = Split(record);
+  ASSERT_EQ(single.size(), 8U);
+  for (const std::size_t piece : {std::size_t{37}, record.size()}) {
+    CycleSplitter splitter(0.0, 3);
+    std::vector<Cycle> cycles;
+    for (std::size_t begin = 0; begin < record.size(); begin += piece) {
+      const std::size_t end = std::min(begin + piece, record.size());
+      splitter.Add(Part(record, begin, end), std::span(lines).subspan(begin, end - begin), cycles);
+    }
+    const std::size_t last = single.back().first_line - 2 + single.back().record.size() - 1;
+    EXPECT_EQ(splitter.Restart(cycles), record.size() - last);
+    ASSERT_EQ(cycles.size(), 3U);
+    EXPECT_EQ(cycles[2].number, 7U);
+    EXPECT_EQ(cycles[2].cycles, 2U);
+    EXPECT_EQ(cycles[2].first_line, single[6].first_line);
+    EXPECT_EQ(cycles[2].record.force.back(), single[7].record.force.back());
+    EXPECT_EQ(splitter.cycles(), 8U);
+  }
 }
 
 TEST(CycleSplitter, TakesNoNoiseForATurningPoint) {
@@ -88,7 +112,8 @@ TEST(CycleSplitter, EndsACycleWithItsFile) {
   const std::size_t of_one_file = cycles.size();
   // What is left goes on from the last turning point of a cycle.
   const std::size_t last = cycles.back().first_line - 2 + cycles.back().record.size() - 1;
-  EXPECT_EQ(splitter.Restart(), record.size() - last);
+  EXPECT_EQ(splitter.Restart(cycles), record.size() - last);
+  EXPECT_EQ(cycles.size(), of_one_file);
   splitter.Add(record, LinesOf(record), cycles);
   ASSERT_EQ(cycles.size(), 2 * of_one_file);
   EXPECT_EQ(cycles[of_one_file].number, of_one_file + 1);

@@ -26,6 +26,7 @@ std::vector<std::string> Rows(TrackOptions options, std::size_t piece = 1000) {
     tracker.Add({part(record.displacement), part(record.force), part(record.time)},
                 std::span(lines).subspan(begin, size));
   }
+  tracker.NextFile();
   tracker.Finish();
   return rows;
 }
@@ -51,6 +52,10 @@ TEST(Tracker, FitsCyclesTogether) {
   const std::vector<std::string> together = Rows({.together = 5});
   ASSERT_EQ(together.size(), kCycles / 5);
   EXPECT_TRUE(together[1].starts_with("6,"));
+  // 149 and 1: the last row has what is left.
+  const std::vector<std::string> unequal = Rows({.together = kCycles - 1});
+  ASSERT_EQ(unequal.size(), 2U);
+  EXPECT_TRUE(unequal[1].starts_with("150,"));
 }
 
 TEST(Tracker, RefusesOptionsBeforeItBegins) {

@@ -164,10 +164,17 @@ TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {
   const auto energy = [](const json& all) { return all["accumulated_energy"].get<double>(); };
   const double whole = energy(summary({}));
   EXPECT_NEAR(energy(summary("--average 5")), whole, 1e-3 * whole);
+  // Where the cycles fill no whole number of rows the last has fewer, and none is left out.
+  const json unequal = summary("--average 150");
+  EXPECT_EQ(unequal["input"]["cycles"], kCycles);
+  EXPECT_EQ(unequal["input"]["unused_samples"], summary({})["input"]["unused_samples"]);
+  EXPECT_NEAR(energy(unequal), whole, 1e-3 * whole);
+  summary("--average 150");
+  EXPECT_EQ(Rows(ContentOf("t.csv")).back()[3], std::to_string(kCycles - 150));
   for (const char* options : {"--average 1", "--average 10"}) {
     const json quantities = summary(options)["quantities"];
     const Table rows = Rows(ContentOf("t.csv"));
-    for (const auto& [name, column] : {std::pair("slip_force", 16U), {"half_gap", 7U}}) {
+    for (const auto& [name, column] : {std::pair("slip_force", 17U), {"half_gap", 8U}}) {
       EXPECT_EQ(quantities[name]["first"].get<double>(), std::stod(rows[1][column]));
       EXPECT_EQ(quantities[name]["last"].get<double>(), std::stod(rows.back()[column]));
     }

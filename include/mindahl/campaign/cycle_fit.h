@@ -58,6 +58,7 @@ struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
   std::size_t samples = 0;
+  std::size_t cycles = 1;
   /// Numbers of the table's columns, each empty where it is not known.
   std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
   /// Holds the warnings about this cycle, each one of CycleFlags().

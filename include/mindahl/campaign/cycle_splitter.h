@@ -17,6 +17,7 @@ namespace mindahl::campaign {
 /// both samples included.
 struct Cycle {
   std::size_t number = 1;      ///< number of the first of them, counted from 1
+  std::size_t cycles = 1;      ///< how many they are
   std::size_t first_line = 0;  ///< line of the file, counted from 1
   loop::Record record;
 };
@@ -27,7 +28,7 @@ struct Cycle {
 class CycleSplitter {
  public:
   /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it
-  /// @param together  cycles to a piece, >= 1
+  /// @param together  cycles to a piece, >= 1; the last of a file may have fewer
   /// @throws InvalidArgument for a gate or a number beyond these
   explicit CycleSplitter(double gate, std::size_t together = 1);
 
@@ -39,8 +40,9 @@ class CycleSplitter {
            std::vector<Cycle>& cycles);
 
   /// Begins anew, as at the start of another file; cycles are numbered on.
-  /// @returns samples that were part of no cycle, since the last one or in all
-  std::size_t Restart();
+  /// @param cycles  whole ones that do not fill a piece are appended, as a shorter one
+  /// @returns samples that were part of no whole cycle, since the last one or in all
+  std::size_t Restart(std::vector<Cycle>& cycles);
 
   /// Returns the number of complete cycles so far.
   [[nodiscard]] std::size_t cycles() const { return cycles_; }
@@ -49,15 +51,17 @@ class CycleSplitter {
   static constexpr std::size_t kMostSamples = 20'000'000;
 
  private:
-  void Complete(std::size_t turning_point, std::vector<Cycle>& cycles);
+  void Turn(std::size_t turning_point, std::vector<Cycle>& cycles);
+  void TakeOff(std::vector<Cycle>& cycles);
 
   double gate_;
   std::size_t together_;
   loop::ReversalFinder finder_;
   io::Samples kept_;         // from the cycle's first sample on
   std::size_t dropped_ = 0;  // samples before them
-  std::size_t begin_ = 0;    // of the cycle, in those
-  std::size_t turns_ = 0;    // turning points since the cycle's first, with it
+  std::size_t begin_ = 0;    // of the piece, in those
+  std::size_t end_ = 0;      // of its last whole cycle, in those
+  std::size_t turns_ = 0;    // turning points since the piece's first, with it
   std::size_t cycles_ = 0;
 };
 

@@ -19,7 +19,8 @@ struct TrackOptions {
   /// Options of each fit. The reversal gate splits the record; without one it is 0.
   identification::FitOptions fit{};
   std::optional<double> compliance = std::nullopt;  ///< G* [1/Pa], for the contact radius
-  std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
+  /// Cycles in a row that are one fit, >= 1; the last of a file may be of fewer.
+  std::size_t together = 1;
   std::size_t threads = 1;  ///< worker threads that fit, >= 1; where it is 1 the calling one fits
   std::size_t skipped = 0;  ///< fits at the beginning that are not made: a multiple of kBatch
 };
@@ -45,10 +46,10 @@ class Tracker {
   void Add(const loop::RecordView& samples, std::span<const std::size_t> lines);
 
   /// Declares that the samples that follow are from another file.
-  /// @returns samples at the end of the last that are part of no cycle
-  std::size_t NextFile() { return splitter_.Restart(); }
+  /// @returns samples at the end of the last that are part of no whole cycle
+  std::size_t NextFile();
 
-  /// Fits what is left.
+  /// Fits what is left, after the NextFile() of the last file.
   void Finish();
 
   /// Returns the loops of the cycles 1, 10, 100, … so far, thinned to what a figure shows.
@@ -58,6 +59,7 @@ class Tracker {
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
  private:
+  void Take();
   void Log(const Cycle& cycle);
   void Begin();
   void Deliver();
