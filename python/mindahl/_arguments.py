@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Number
@@ -89,12 +90,20 @@ def column_text(name: str, value: Any, unit: Optional[str] = None) -> str:
 def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
     """A contiguous array of float64, the one given where it is one.
 
-    keep_missing: NaN and what is no number at all stay, as NaN, for the reader to judge.
+    keep_missing: NaN stays, for the reader to judge; texts are read as numbers, and what holds
+        anything else is NaN throughout.
     """
     if isinstance(values, np.ma.MaskedArray) and np.any(values.mask):
         raise ValueError(f"{name} has masked values: leave these samples out of all arrays")
     given = np.asarray(values)
-    if keep_missing and (given.dtype == object or given.dtype.kind not in "fiu"):
+    elements = given
+    if given.dtype == object or (keep_missing and given.dtype.kind in "UT"):  # as of pandas' Float64
+        try:
+            given = np.array([_number(each) for each in given.flat]).reshape(given.shape)
+        except (TypeError, ValueError):
+            if keep_missing:
+                return np.full(given.shape, np.nan)
+    elif keep_missing and given.dtype.kind not in "fiu":
         return np.full(given.shape, np.nan)
     if given.dtype.kind not in "fiu":
         raise ValueError(f"{name} has the dtype {given.dtype}: must be an array of real numbers")
@@ -108,8 +117,17 @@ def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
     finite = np.isfinite(converted)
     if not finite.all():
         at = int(np.argmin(finite))
-        raise ValueError(f"{name}[{at}] = {converted[at]} is invalid: must be finite")
+        raise ValueError(f"{name}[{at}] = {elements[at]} is invalid: must be finite")
     return converted
+
+
+def _number(value: Any) -> float:
+    """A number, or a text that is one; NaN of what is missing, as pandas has it."""
+    if value is None or type(value).__name__ == "NAType" or value == "":
+        return math.nan
+    if isinstance(value, (bool, np.bool_)):
+        raise TypeError
+    return float(value)
 
 
 def is_quantity(value: Any) -> bool:

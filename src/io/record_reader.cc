@@ -247,6 +247,7 @@ RecordFile RecordOf(const std::vector<CsvColumn>& columns, std::string source,
              columns.front().name, table.rows(), name, values.size());
     }
     Column& added = table.columns.emplace_back(ReadName(name));
+    if (std::ranges::all_of(values, [](double value) { return std::isnan(value); })) continue;
     added.values.assign(values.begin(), values.end());
     for (std::size_t row = 0; row < values.size(); ++row) {
       std::string& said = std::isnan(values[row]) ? added.missing : added.broken;

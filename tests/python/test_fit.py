@@ -107,6 +107,29 @@ def test_a_frame_is_read_by_the_names_and_units_of_its_columns(sphere):
     assert result.input.columns.displacement.unit == "um"
 
 
+@pytest.mark.parametrize("dtype", ["Float64", object, "string", str])
+def test_a_frame_is_read_whatever_its_columns_hold_the_numbers_in(dtype, sphere):
+    seconds, displacement, force = sphere
+    frame = pandas.DataFrame({"x [m]": displacement, "F [N]": force, "t [s]": seconds})
+    expected = mindahl.fit(frame)
+    made = frame.astype(dtype)
+    made["by"] = "somebody"
+    assert mindahl.fit(made).sigma.value == expected.sigma.value
+    if dtype in ("Float64", object):
+        given = mindahl.fit(made["x [m]"], made["F [N]"], time=made["t [s]"])
+        assert given.sigma.value == expected.sigma.value
+        with pytest.raises(ValueError, match=r"force\[3\] = <NA> is invalid: must be finite"):
+            mindahl.fit(made["x [m]"], made["F [N]"].mask(made.index == 3, pandas.NA))
+    made.loc[3, "F [N]"] = pandas.NA
+    frame.loc[3, "F [N]"] = np.nan
+    with pytest.warns(mindahl.FitWarning, match="1 row is left out, the first: record:4:2:"):
+        assert mindahl.fit(made).sigma.value == mindahl.fit(frame).sigma.value
+    made["F [N]"] = made["F [N]"].astype(object)
+    made.loc[5, "F [N]"] = "oops"
+    with pytest.raises(mindahl.InputError, match=r"'F \[N\]' \(column 2\) holds no numbers"):
+        mindahl.fit(made, force="F")
+
+
 def test_units_that_a_frame_does_not_name_are_warned_of_once(sphere):
     seconds, displacement, force = sphere
     frame = pandas.DataFrame({"displacement": displacement, "force": force, "time [s]": seconds})
