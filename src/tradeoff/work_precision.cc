@@ -7,8 +7,10 @@
 #include <limits>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/simplified_law.h"
 
@@ -24,14 +26,57 @@ namespace {
 
 constexpr const char* kExactModel = "mindlin-dahl";
 
-/// Returns ∫T dδ [J], trapezoidal.
-double Work(std::span<const double> displacement, std::span<const double> force) {
-  long double work = 0.0L;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    work += (static_cast<long double>(force[i]) + force[i - 1]) / 2 *
-            (static_cast<long double>(displacement[i]) - displacement[i - 1]);
+/// Samples [first, last] of a cycle that closes.
+using ClosedCycle = std::pair<std::size_t, std::size_t>;
+
+/// Returns the cycles along a path that close, in their order, none within another: from a turning
+/// point back to it, to 5 % of the width between, and in between not beyond the turning point
+/// before it, so that force and stored energy return too. Of the first, that is its image through
+/// the unloaded contact.
+std::vector<ClosedCycle> ClosedCycles(std::span<const double> displacement) {
+  constexpr double kReturns = 0.05;
+  std::vector<double> path = {0.0};  // where the contact is unloaded
+  path.insert(path.end(), displacement.begin(), displacement.end());
+  std::vector<std::size_t> turns = loop::FindReversals(path, 0.0);
+  turns.push_back(path.size() - 1);
+  // Returns the place from which the path is back at a turning point, 0 where it never is.
+  const auto end_of = [&](std::size_t begin) -> std::size_t {
+    const double at = path[turns[begin]];
+    const double before = begin == 0 ? -at : path[turns[begin - 1]];
+    const double sense = at > before ? 1.0 : -1.0;
+    double width = 0.0;
+    for (std::size_t k = begin + 1; k < turns.size(); ++k) {
+      const double below = sense * (at - path[turns[k]]);
+      const bool is_opposite = (k - begin) % 2 == 1;
+      width = std::max(width, below);
+      const double tolerance = kReturns * width;
+      if (below < -tolerance || below > sense * (at - before) + tolerance) return 0;
+      if (!is_opposite && below <= tolerance) return k;
+    }
+    return 0;
+  };
+  std::vector<ClosedCycle> cycles;
+  for (std::size_t begin = 0; begin + 2 < turns.size();) {
+    const std::size_t end = end_of(begin);
+    if (end > 0) cycles.emplace_back(turns[begin] - 1, turns[end] - 1);
+    begin = end > 0 ? end : begin + 1;
   }
-  return static_cast<double>(work);
+  return cycles;
+}
+
+/// Returns ∮T dδ [J] over cycles, trapezoidal, each closed by a chord.
+double LostEnergy(std::span<const ClosedCycle> cycles, std::span<const double> displacement,
+                  std::span<const double> force) {
+  long double energy = 0.0L;
+  const auto add = [&](std::size_t from, std::size_t to) {
+    energy += (static_cast<long double>(force[from]) + force[to]) / 2 *
+              (static_cast<long double>(displacement[to]) - displacement[from]);
+  };
+  for (const auto& [first, last] : cycles) {
+    for (std::size_t i = first + 1; i <= last; ++i) add(i - 1, i);
+    add(last, first);
+  }
+  return static_cast<double>(energy);
 }
 
 }  // namespace
@@ -85,8 +130,9 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
     const double error = std::abs(force[i] - exact[i]) / (peak > 0 ? peak : 1.0);
     precision.max_force = std::max(precision.max_force, error);
   }
-  const double lost = Work(displacement, exact);
-  if (lost != 0) precision.energy = std::abs(Work(displacement, force) / lost - 1);
+  const std::vector<ClosedCycle> cycles = ClosedCycles(displacement);
+  const double lost = LostEnergy(cycles, displacement, exact);
+  if (lost != 0) precision.energy = std::abs(LostEnergy(cycles, displacement, force) / lost - 1);
   return precision;
 }
 

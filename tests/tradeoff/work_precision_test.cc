@@ -13,19 +13,59 @@ namespace {
 using namespace models;
 using namespace methods;
 
-const History kDisplacement = {0, 1, 2, 1};
-const History kExact = {0, 2, 4, 0};
+// A virgin stroke, and a cycle from the turning point at sample 1 to the end.
+const History kDisplacement = {0, 1, 0, -1, 0, 1};
+const History kExact = {0, 2, -1, -2, 1, 2};
 
 TEST(Compare, MatchesCaseComputedByHand) {
-  // Errors over the peak 0, ¼, 0, ¼. Work 1 + 3 − 2 = 2 against 1.5 + 3.5 − 2.5 = 2.5.
-  const Precision precision = Compare(kExact, kDisplacement, History{0, 3, 4, 1});
+  // Errors over the peak: ½ at the fifth sample. Energy −½ + 1½ − ½ + 1½ = 2 against ½ more.
+  const Precision precision = Compare(kExact, kDisplacement, History{0, 2, -1, -2, 1.5, 2});
   EXPECT_DOUBLE_EQ(precision.max_force, 0.25);
   ASSERT_TRUE(precision.energy);
   EXPECT_DOUBLE_EQ(*precision.energy, 0.25);
 }
 
-TEST(Compare, KnowsNoEnergyErrorWhereNothingIsDone) {
-  EXPECT_FALSE(Compare(History{0, 2, 0}, History{0, 1, 0}, History{0, 2, 1}).energy);
+TEST(Compare, ClosesACycleThatEndsBesideItsBeginningByAChord) {
+  // To 2 % of its width. The chord takes back what the last step has too little.
+  History displacement = kDisplacement;
+  displacement.back() = 0.96;
+  EXPECT_DOUBLE_EQ(
+      *Compare(kExact, displacement, History{0, 2, -1, -2, 1.5, 2}).energy,
+      (-0.5 + 1.5 - 0.25 + 1.75 * 0.96 + 2 * 0.04) / (-0.5 + 1.5 - 0.5 + 1.5 * 0.96 + 2 * 0.04) -
+          1);
+}
+
+TEST(Compare, CountsALoopWithinACycleWithIt) {
+  const History displacement = {0, 3, 0, -1, 0, -3, 0, 3};
+  const History exact = {0, 3, 0, -1, 1, -3, 0, 3};
+  History force = exact;
+  force[4] = 2;
+  const double within = *Compare(exact, displacement, force).energy;
+  const auto area = [&](const History& of) {
+    double sum = 0.0;
+    for (std::size_t i = 2; i < of.size(); ++i) {
+      sum += (of[i] + of[i - 1]) / 2 * (displacement[i] - displacement[i - 1]);
+    }
+    return sum;
+  };
+  EXPECT_DOUBLE_EQ(within, std::abs(area(force) / area(exact) - 1));
+}
+
+TEST(Compare, KnowsNoEnergyErrorWhereNoCycleCloses) {
+  const auto has_energy = [](const History& displacement) {
+    History exact(displacement.size());
+    Prepare({"mindlin-dahl", "exact"}, {1, 1.0 / 3, 1})({.displacement = displacement}, exact);
+    History force = exact;
+    for (double& at : force) at *= 1.1;
+    return Compare(exact, displacement, force).energy.has_value();
+  };
+  EXPECT_FALSE(has_energy({0, 1, 2, 3}));
+  EXPECT_FALSE(has_energy({0, 1, 2, 1, 0}));  // back where it is unloaded: a stroke and a half
+  EXPECT_FALSE(has_energy({0, 1, 0, -1, 0, 0.85}));      // short of it by 7.5 % of its width
+  EXPECT_FALSE(has_energy({0, 1, -1.2, 1.44, -1.728}));  // it grows
+  EXPECT_FALSE(has_energy({0, 1, 0, -2, 0, 1}));         // another branch leads to 1 than left it
+  EXPECT_TRUE(has_energy({0, 1, 0, -1, 0, 1, 0.5}));
+  EXPECT_TRUE(has_energy({1, 0, -1, 0, 1}));  // the first row is a loading step
 }
 
 WorkPrecision Point(double cost, double force, std::optional<double> energy = std::nullopt) {

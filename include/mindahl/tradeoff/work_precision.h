@@ -31,11 +31,13 @@ std::vector<Approximation> AllApproximations();
 /// Errors of a response, relative [–].
 struct Precision {
   double max_force = 0.0;  ///< largest |ΔT| over the peak force
-  /// |ΔW/W| of the work ∫T dδ, trapezoidal; empty where the exact one is 0
+  /// |ΔW/W| of the energy ∮T dδ lost over the cycles that close: the path comes back to a turning
+  /// point, to 5 % of the cycle's width, without passing the one before. Empty without such a
+  /// cycle.
   std::optional<double> energy = std::nullopt;
 };
 
-/// Compares a response with the exact one [N], sample by sample.
+/// Compares a response with the exact one [N], sample by sample; the contact is unloaded at 0.
 Precision Compare(std::span<const double> exact, std::span<const double> displacement,
                   std::span<const double> force);
 
