@@ -63,6 +63,22 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
       {.stiffness = *rig}, *request.amplitude);
 }
 
+/// Takes the load of a fit's slip force, as µ is of both.
+void TakeLoad(const Json& fit, ConvertOptions& request) {
+  constexpr double kSame = 0.01;  // as a load that varies by no more is constant
+  std::optional<double>& load = request.options.normal_load;
+  const Json found = report::At(fit, "/contact/normal_load/value");
+  if (!found.is_number()) return;
+  const auto of_fit = found.get<double>();
+  if (load && std::abs(*load / of_fit - 1) > kSame) {
+    Refuse(
+        "--normal-load {} contradicts the fit, whose slip force is that at {:.6g} N: leave it out, "
+        "or give --slip-force at that load",
+        *load, of_fit);
+  }
+  load = of_fit;
+}
+
 double Require(const std::optional<double>& value, std::string_view option) {
   if (!value) Refuse("{} missing: give it, or the JSON file of a fit that determines it", option);
   return *value;
@@ -81,6 +97,15 @@ void RunConvert(const ConvertOptions& given, Console& console) {
   if (!request.fit.empty()) {
     const Json fit = ReadFit(request.fit);
     TakeFit(fit, request);
+    const bool has_load = target.form == convert::Form::kSpring && !given.law.slip_force;
+    if (has_load) TakeLoad(fit, request);
+    if (!given.amplitude && report::At(fit, "/parameters/load_exponent").is_object() &&
+        report::At(fit, "/input/files").size() > 1) {
+      Say("convert: note",
+          {"the fit's amplitude is of the file nearest to slip, at that file's load; sigma and the "
+           "slip force are those at the mean load: --amplitude gives another"},
+          console);
+    }
     left_out = fit.value(Json::json_pointer("/terms/added"), left_out);
     std::erase(left_out, "rig_stiffness");  // the amplitude is without it
     Require(request.law.alpha, "--alpha");
@@ -184,8 +209,9 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->capture_default_str();
   result.AddCount("--elements", options.options.elements, "number of elements of --to iwan", 1,
                   10'000);
-  result.AddQuantity("--normal-load", options.options.normal_load,
-                     "normal load [N] for --to lammps: friction coefficient Tc/N", "N", "N");
+  result.AddQuantity(
+      "--normal-load", options.options.normal_load,
+      "normal load [N] for --to lammps: friction coefficient Tc/N;\ndefault the fit's", "N", "N");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options.input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");

@@ -86,6 +86,31 @@ TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   ExpectRefused(command("{}"), "is not the result of a fit");
 }
 
+TEST_F(Convert, DividesTheSlipForceOfAFitByTheLoadThatItBelongsTo) {
+  const auto fit = [&](const std::string& more) {
+    return "convert --to lammps " +
+           Write("series.json", R"({"schema": "mindahl.fit/2", "model": "mindlin-dahl",
+      "input": {"files": ["a", "b"]}, "parameters": {"sigma": {"value": 5e7},
+      "alpha": {"value": 0.3}, "slip_force": {"value": 60})" +
+                                    more + R"(},
+      "contact": {"normal_load": {"value": 150}}, "measured": {"amplitude": 6e-6}})") +
+           " ";
+  };
+  const std::string series = fit(R"(, "load_exponent": {"value": 0.3333})");
+  const json made = JsonOf(series);
+  EXPECT_DOUBLE_EQ(Value(made, "mu"), Value(made, "slip_force") / 150);
+  EXPECT_DOUBLE_EQ(Value(JsonOf(series + "--normal-load 149.9"), "mu"), Value(made, "mu"));
+  ExpectRefused(series + "--normal-load 100",
+                "--normal-load 100 contradicts the fit, whose slip force is that at 150 N");
+  const json given = JsonOf(series + "--normal-load 100 --slip-force 40");
+  EXPECT_DOUBLE_EQ(Value(given, "mu"), Value(given, "slip_force") / 100);
+  // The amplitude is of one file, the law at the mean load.
+  EXPECT_THAT(RunCommand(series).err,
+              HasSubstr("of the file nearest to slip, at that file's load"));
+  EXPECT_EQ(RunCommand(series + "--amplitude 1e-6").err, "");
+  EXPECT_EQ(RunCommand(fit("")).err, "");
+}
+
 TEST_F(Convert, SaysWhatOfAFitTheTargetHasNot) {
   const std::string fit = Write("fit.json", R"({"schema": "mindahl.fit/2", "model": "dahl",
       "parameters": {"sigma": {"value": 5e7}, "alpha": {"value": 0.5}, "slip_force": {"value": 30},
