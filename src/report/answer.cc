@@ -66,7 +66,7 @@ class Writer {
     AddColumns();
     AddReading();
     AddFriction();
-    AddParameter("stiffness", "σ", *fit_.Find("sigma"), "");
+    AddStiffness();
     AddShape();
     AddLoad();
     AddTerms();
@@ -170,6 +170,26 @@ class Writer {
       remark = "μ needs --normal-load";
     }
     AddParameter("friction", "Tc", slip_force, remark);
+  }
+
+  /// Says σ, and what a still needs where some of the materials are known.
+  void AddStiffness() {
+    const ParameterEstimate& sigma = *fit_.Find("sigma");
+    const contact::KnownContact& known = report_.known;
+    const std::pair<const char*, bool> materials[] = {
+        {"--youngs-modulus-1", known.body_1.youngs_modulus.has_value()},
+        {"--poisson-1", known.body_1.poisson_ratio.has_value()},
+        {"--youngs-modulus-2", known.body_2.youngs_modulus.has_value()},
+        {"--poisson-2", known.body_2.poisson_ratio.has_value()}};
+    std::vector<std::string> missing;
+    for (const auto& [option, is_given] : materials) {
+      if (!is_given) missing.emplace_back(option);
+    }
+    const bool is_started = !missing.empty() && missing.size() < std::size(materials);
+    const bool needs_them =
+        is_started && !known.tangential_compliance && !report_.is_torsional() && sigma.is_known();
+    AddParameter("stiffness", "σ", sigma,
+                 needs_them ? fmt::format("a needs {}", fmt::join(missing, ", ")) : "");
   }
 
   /// Says whether an exponent is a theory's; a rig that is not told from the contact changes it.

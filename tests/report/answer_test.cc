@@ -42,6 +42,21 @@ loop::LoopFacts Facts(double half_gap) {
   return facts;
 }
 
+TEST(Answer, SaysWhichMaterialsTheContactRadiusStillNeeds) {
+  ReportInput input = MadeInput();
+  input.known = {};
+  EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr("needs")));
+  input.known.body_1.youngs_modulus = 210e9;
+  EXPECT_THAT(LineOf(input, "stiffness"),
+              HasSubstr("a needs --poisson-1, --youngs-modulus-2, --poisson-2"));
+  input.known.body_1.poisson_ratio = 0.3;
+  input.known.body_2 = input.known.body_1;
+  EXPECT_THAT(LineOf(input, "stiffness"), AllOf(HasSubstr(", a "), Not(HasSubstr("needs"))));
+  input.known = {.tangential_compliance = 4e-11};
+  input.known.body_1.youngs_modulus = 210e9;
+  EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr("needs")));
+}
+
 ReportInput Doubtful() {
   ReportInput input = MadeInput();
   auto& adequacy = input.fit.adequacy;
