@@ -150,7 +150,7 @@ TEST_F(Tradeoff, NamesTheCheapestAlongAPath) {
     return JsonOf("tradeoff --sigma 1 --slip-force 1 --tolerance 1% --path " +
                   Write("path.csv", path))["excitations"][0]["cheapest"];
   };
-  EXPECT_EQ(cheapest("1e-3")["model"], "mindlin-dahl");  // Jenkins' would lose the energy
+  EXPECT_EQ(cheapest("1e-3")["model"], "simplified-dahl");  // Jenkins' would lose the energy
   EXPECT_EQ(cheapest("1e6")["model"], "jenkins");
   EXPECT_EQ(cheapest("0.8")["method"], "exact");
 }

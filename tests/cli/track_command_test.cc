@@ -66,12 +66,12 @@ TEST_F(TrackCommand, WritesARowACycle) {
   const Table rows = Rows(Whole());
   ASSERT_EQ(rows.size(), 1 + kCycles);
   EXPECT_EQ(rows[0][0], "cycle");
-  EXPECT_EQ(rows[0][3], "start_time [s]");
+  EXPECT_EQ(rows[0][4], "start_time [s]");
   double energy = 0.0;
   for (std::size_t k = 1; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k][0], std::to_string(k));
-    energy += std::stod(rows[k][8]);
-    EXPECT_NEAR(std::stod(rows[k][23]), energy, 1e-12 * energy);
+    energy += std::stod(rows[k][9]);
+    EXPECT_NEAR(std::stod(rows[k][24]), energy, 1e-12 * energy);
   }
 }
 
