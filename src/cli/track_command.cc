@@ -359,7 +359,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddContactOptions(command, options.fit.contact);
   const OptionGroup cycles(command, "Cycles");
   cycles.AddCount("--average", options.track.together,
-                  "number of consecutive cycles that are fitted together, fewer at a file's end", 1,
+                  "consecutive cycles that are fitted together, fewer at a file's end", 1,
                   1'000'000);
   cycles.AddChoice("--broken-rows", options.fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
