@@ -59,27 +59,6 @@ std::pair<double, double> MovingMeanRange(Column force) {
   return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
 }
 
-/// Returns ∮ T dδ [J] from one turning point to the next but one, closed by a chord.
-double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
-  const Column x = record.displacement;
-  // Forces relative to the first sample: an offset must not cost digits on a small loop.
-  const auto force = [&](std::size_t i) {
-    return static_cast<long double>(record.force[i]) - record.force[first];
-  };
-  const auto way = [&](std::size_t from, std::size_t to) {
-    return static_cast<long double>(x[to]) - x[from];
-  };
-  long double energy = 0.5L * force(last) * way(last, first);
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
-  }
-  if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
-    ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
-                 "must be within the range of double, 1.8e308: use larger units");
-  }
-  return static_cast<double>(energy);
-}
-
 /// The samples from one turning point to the next.
 struct Stroke {
   Column displacement;  // [m]
@@ -312,6 +291,26 @@ bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
   return facts.energy_per_cycle >= 0.85 * rectangle;
+}
+
+double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
+  const Column x = record.displacement;
+  // Forces relative to the first sample: an offset must not cost digits on a small loop.
+  const auto force = [&](std::size_t i) {
+    return static_cast<long double>(record.force[i]) - record.force[first];
+  };
+  const auto way = [&](std::size_t from, std::size_t to) {
+    return static_cast<long double>(x[to]) - x[from];
+  };
+  long double energy = 0.5L * force(last) * way(last, first);
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
+  }
+  if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
+    ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
+                 "must be within the range of double, 1.8e308: use larger units");
+  }
+  return static_cast<double>(energy);
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,

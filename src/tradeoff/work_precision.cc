@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/loop/facts.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/simplified_law.h"
@@ -64,19 +65,11 @@ std::vector<ClosedCycle> ClosedCycles(std::span<const double> displacement) {
   return cycles;
 }
 
-/// Returns ∮T dδ [J] over cycles, trapezoidal, each closed by a chord.
-double LostEnergy(std::span<const ClosedCycle> cycles, std::span<const double> displacement,
-                  std::span<const double> force) {
-  long double energy = 0.0L;
-  const auto add = [&](std::size_t from, std::size_t to) {
-    energy += (static_cast<long double>(force[from]) + force[to]) / 2 *
-              (static_cast<long double>(displacement[to]) - displacement[from]);
-  };
-  for (const auto& [first, last] : cycles) {
-    for (std::size_t i = first + 1; i <= last; ++i) add(i - 1, i);
-    add(last, first);
-  }
-  return static_cast<double>(energy);
+/// Returns the energy [J] lost over cycles.
+double LostEnergy(std::span<const ClosedCycle> cycles, const loop::RecordView& record) {
+  double energy = 0.0;
+  for (const auto& [first, last] : cycles) energy += loop::CycleEnergy(record, first, last);
+  return energy;
 }
 
 }  // namespace
@@ -131,8 +124,8 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
     precision.max_force = std::max(precision.max_force, error);
   }
   const std::vector<ClosedCycle> cycles = ClosedCycles(displacement);
-  const double lost = LostEnergy(cycles, displacement, exact);
-  if (lost != 0) precision.energy = std::abs(LostEnergy(cycles, displacement, force) / lost - 1);
+  const double lost = LostEnergy(cycles, {displacement, exact});
+  if (lost != 0) precision.energy = std::abs(LostEnergy(cycles, {displacement, force}) / lost - 1);
   return precision;
 }
 

@@ -73,6 +73,10 @@ bool RanAway(const LoopFacts& facts, double slip_force);
 /// π/4. A spring parallel to the contact hides it.
 bool ReachesSlip(const LoopFacts& facts);
 
+/// Returns ∮ T dδ [J] from one sample to a later one, trapezoidal, closed by a chord.
+/// @throws InvalidArgument when it overflows
+double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last);
+
 /// @param record       with the force of either sign
 /// @param reversals    as from FindReversals on the same record; its first and last sample may be
 ///                     among them, where it is known to begin or end at one
