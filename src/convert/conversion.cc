@@ -7,7 +7,6 @@
 #include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <variant>
@@ -97,33 +96,29 @@ SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& opt
 }
 
 /// Returns the amplitudes [m] at which the error is looked at, in order from X to a hundred times
-/// as much and from X to a hundredth. Where two loops bend elsewhere, the error has a lobe from one
-/// corner to the next: the corners are among the places, and kBetween between any two of them.
-std::array<std::vector<double>, 2> PlacesAround(double amplitude, std::span<const double> corners) {
+/// as much, or to a hundredth. Where two loops bend elsewhere, the error has a lobe from one corner
+/// to the next: the corners are among the places, and kBetween between any two of them.
+std::vector<double> PlacesFrom(double amplitude, bool is_up, std::span<const double> corners) {
   constexpr double kReach = 100.0;
   constexpr int kSteps = 20;
   constexpr int kBetween = 3;
   constexpr double kClosest = 5e-3;  // of a corner to the place before it, relative
-  std::vector<double> steps = {amplitude};
-  for (int i = 1; i <= kSteps; ++i) {
-    const double factor = std::pow(kReach, static_cast<double>(i) / kSteps);
-    steps.push_back(amplitude * factor);
-    steps.push_back(amplitude / factor);
-  }
+  std::vector<double> ways;          // factors by which the amplitude grows or falls
+  for (int i = 1; i <= kSteps; ++i) ways.push_back(std::pow(kReach, i / double{kSteps}));
   for (const double corner : corners) {
-    if (std::max(corner / amplitude, amplitude / corner) < kReach) steps.push_back(corner);
+    const double way = is_up ? corner / amplitude : amplitude / corner;
+    if (way > 1 && way < kReach) ways.push_back(way);
   }
-  std::array<std::vector<double>, 2> places;
-  for (std::vector<double>& way : places) {
-    const bool is_up = &way == &places.front();
-    is_up ? std::ranges::sort(steps) : std::ranges::sort(steps, std::greater<>());
-    way.push_back(amplitude);
-    for (const double step : steps) {
-      const double last = way.back();
-      if (is_up ? step < last * (1 + kClosest) : step > last / (1 + kClosest)) continue;
-      for (int j = 1; j <= kBetween + 1; ++j) {
-        way.push_back(std::lerp(last, step, static_cast<double>(j) / (kBetween + 1)));
-      }
+  std::ranges::sort(ways);
+  std::vector<double> places = {amplitude};
+  double last = 1.0;
+  for (const double way : ways) {
+    if (way < last * (1 + kClosest)) continue;
+    last = way;
+    const double from = places.back();
+    const double to = is_up ? amplitude * way : amplitude / way;
+    for (int j = 1; j <= kBetween + 1; ++j) {
+      places.push_back(std::lerp(from, to, static_cast<double>(j) / (kBetween + 1)));
     }
   }
   return places;
@@ -242,9 +237,10 @@ Conversion Convert(const ModelLaw& contact, const TargetRow& target,
     corners.insert(corners.end(), own.begin(), own.end());
     // An element slips from the amplitude on at which the whole branch, of 2X, is as long.
     for (double& corner : corners) corner /= 2;
-    const auto [up, down] = PlacesAround(options.amplitude, corners);
-    conversion.within = {EdgeOf(error, options.tolerance, down),
-                         EdgeOf(error, options.tolerance, up)};
+    const auto edge = [&](bool is_up) {
+      return EdgeOf(error, options.tolerance, PlacesFrom(options.amplitude, is_up, corners));
+    };
+    conversion.within = {edge(false), edge(true)};
   }
   const std::map<std::string_view, double> values = ValuesOf(conversion.law, options);
   for (const ParameterRow& row : target.parameters) {

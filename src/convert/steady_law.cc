@@ -116,46 +116,31 @@ SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
 }
 
 /// Virgin curve of Jenkins elements: a polygon through its corners.
-class Polygon {
- public:
-  explicit Polygon(const IwanElements& elements) {
-    std::vector<std::size_t> order(elements.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto stick = [&](std::size_t j) {
-      return elements.slip_force[j] / elements.stiffness[j];
-    };
-    std::ranges::sort(order, {}, stick);
-    slope_.assign(order.size() + 1, 0.0);
-    sliding_ = slope_;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      corners_.push_back(stick(order[i]));
-      sliding_[i + 1] = sliding_[i] + elements.slip_force[order[i]];
+struct Polygon {
+  explicit Polygon(const IwanElements& elements) : slope(elements.size() + 1), sliding(slope) {
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+      corners.push_back(elements.slip_force[j] / elements.stiffness[j]);
+      sliding[j + 1] = sliding[j] + elements.slip_force[j];
     }
-    for (std::size_t i = order.size(); i-- > 0;) {
-      slope_[i] = slope_[i + 1] + elements.stiffness[order[i]];
-    }
+    for (std::size_t j = elements.size(); j-- > 0;) slope[j] = slope[j + 1] + elements.stiffness[j];
   }
 
   [[nodiscard]] double Force(double x) const {
-    const auto slid =
-        static_cast<std::size_t>(std::ranges::lower_bound(corners_, x) - corners_.begin());
-    return sliding_[slid] + slope_[slid] * x;
+    const auto slid = std::ranges::lower_bound(corners, x) - corners.begin();
+    return sliding[static_cast<std::size_t>(slid)] + slope[static_cast<std::size_t>(slid)] * x;
   }
 
- private:
-  std::vector<double> corners_;  // displacements at which an element slips, ascending
-  // Of so many elements that slip: stiffness of the others, and the force of these.
-  std::vector<double> slope_;
-  std::vector<double> sliding_;
+  std::vector<double> corners;  // displacements at which an element slips, ascending
+  std::vector<double> slope;    // [j]: stiffness of the elements that stick while the first j slip
+  std::vector<double> sliding;  // [j]: force of the first j elements while they slip
 };
 
 SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
   Polygon virgin(elements);
   SteadyLoop loop{.peak = virgin.Force(amplitude), .energy = 0.0, .corners = {}, .force = {}};
   for (std::size_t j = 0; j < elements.size(); ++j) {
-    const double stick = elements.slip_force[j] / elements.stiffness[j];
-    loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - stick, 0.0);
-    loop.corners.push_back(2 * stick);
+    loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - virgin.corners[j], 0.0);
+    loop.corners.push_back(2 * virgin.corners[j]);
   }
   loop.force = [virgin = std::move(virgin), peak = loop.peak](double distance) {
     return 2 * virgin.Force(distance / 2) - peak;

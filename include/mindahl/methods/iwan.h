@@ -8,7 +8,8 @@
 
 namespace mindahl::methods {
 
-/// Jenkins elements in parallel, Iwan (1966): springs each with a Coulomb slider.
+/// Jenkins elements in parallel, Iwan (1966): springs each with a Coulomb slider, in the order in
+/// which they slip.
 struct IwanElements {
   std::vector<double> stiffness;   ///< [N/m], sum σ
   std::vector<double> slip_force;  ///< [N], sum Tc
