@@ -45,14 +45,15 @@ Combined Combine(double value, double error, const Prior& prior) {
   return {(reading * value + before * prior.value) / (reading + before), 1 / (reading + before)};
 }
 
-/// What repeats in every cycle widens what the record says, and not what the prior does.
+/// A residual that repeats in every cycle enlarges the error of the record's estimate; the standard
+/// uncertainty of the prior stays as it was given.
 TEST(Prior, KeepsItsUncertaintyBesideAMisfitThatRepeats) {
   const testing::History displacement = Cycling(Wave::kSine, 1.5 * testing::kReach, 20.0, 100);
   Generator generator(7);
   Record record = WithForceNoise(LoopOf(kLaw, displacement), kNoise * kLaw.slip_force, generator);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] +=
-        0.03 * kLaw.slip_force * std::sin(2 * 3.14159 * displacement[i] / (0.5 * testing::kReach));
+    record.force[i] += 0.03 * kLaw.slip_force *
+                       std::sin(2 * std::numbers::pi * displacement[i] / (0.5 * testing::kReach));
   }
   for (const double uncertainty : {1e-4, 1e-5}) {  // less than what the record says
     const FitResult fit =

@@ -49,8 +49,7 @@ struct [[gnu::visibility("default")]] CeresParameter {
 ///
 /// Without residuals of one's own its minimum is the fit's. Priors of the options, turning points
 /// that the fit found between samples, weights of noisy displacements and those of a robust loss
-/// are not part of it;
-/// a robust loss is given to AddTo(), which applies it to each sample.
+/// are not part of it; a robust loss is given to AddTo(), which applies it to each sample.
 class [[gnu::visibility("default")]] CeresProblem {
  public:
   /// @param records        [m], [N]; those of the fit

@@ -1,7 +1,5 @@
 #include "identification/diagnosis/diagnosis.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>

@@ -93,7 +93,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
     jacobian.col(static_cast<Eigen::Index>(j)).setZero();
   }
   const Eigen::VectorXd& residual = fitted.residual();
-  const auto law = static_cast<double>(free.size());
+  const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
   const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
