@@ -116,7 +116,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   if (is_judged) {
     ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
   }
-  result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
+  result.parameters[kSlipForce] = KeepAboveCarriedForce(problem.parameters, result);
   Append(result.findings, FindOnParameters(fitted, attempt.prepared, options, result));
   if (const std::optional<Finding> inadequate = FindInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result), *inadequate);

@@ -112,6 +112,9 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "{confidence} interval {lower:parameter} … {upper:parameter} is too wide{remedy}"},
     {"not_identifiable.with_slip_force",
      "only its ratio to the slip force is determined; fix one of them"},
+    {"not_identifiable.with_spring",
+     "a parallel spring stands for it: raise the amplitude until the loop slides, or fix "
+     "plateau_slope"},
     {"not_identifiable.below_slip", "the loop stays below slip"},
     {"bounded_below",
      "the force does not level off: raise the amplitude until it does (mindahl plan says how far)"},

@@ -57,5 +57,29 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   }
 }
 
+TEST(Profile, LeavesOpenWhatASpringHides) {
+  // For α = ½ and short of slip σx − σ²x²/(4Tc) + kx is a family of equal curves: σ + k and σ²/Tc.
+  constexpr BranchLaw kSquare{4e7, 0.5, 40.0};
+  const double slip = GrossSlipDisplacement(kSquare);
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    Generator generator(seed);
+    const double reach = (0.5 + 0.04 * static_cast<double>(seed)) * slip;
+    const Record record =
+        WithForceNoise(testing::LoopOf(kSquare, Cycling(Wave::kSine, reach, 2.0, 100)),
+                       0.001 * kSquare.slip_force, generator);
+    const FitResult fit = FitOne(record, {.terms = {"plateau_slope"}});
+    SCOPED_TRACE(reach / slip);
+    EXPECT_FALSE(fit.Find("slip_force")->upper95);
+    for (const auto& [name, value] :
+         {std::pair("sigma", kSquare.tangential_stiffness),
+          std::pair("slip_force", kSquare.slip_force), std::pair("plateau_slope", 0.0)}) {
+      const ParameterEstimate& estimate = *fit.Find(name);
+      if (estimate.identifiability == Identifiability::kNotIdentifiable) continue;
+      EXPECT_LE(estimate.lower95.value_or(value), value) << name;
+      EXPECT_GE(estimate.upper95.value_or(value), value) << name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::identification::profile_test

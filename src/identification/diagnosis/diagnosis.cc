@@ -108,6 +108,19 @@ std::optional<Finding> FindUndetermined(const Estimates& fitted) {
                  .kind = are_alone ? "without_effect" : "combination"};
 }
 
+namespace {
+
+/// True if a spring parallel to the contact is fitted to a loop that leaves Tc open above: far from
+/// slip a force σx − cx² has the same loop with less of σ and a spring for the rest.
+bool HidesInSpring(const FitResult& result) {
+  const ParameterEstimate* spring = result.Find("plateau_slope");
+  const ParameterEstimate& slip_force = *result.Find("slip_force");
+  return spring != nullptr && spring->status != ParameterStatus::kFixed &&
+         slip_force.status != ParameterStatus::kFixed && !slip_force.upper95;
+}
+
+}  // namespace
+
 std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   std::vector<Finding> findings;
   const ParameterEstimate& slip_force = *result.Find("slip_force");
@@ -118,8 +131,9 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
                       .parameters = {"slip_force"},
                       .kind = loop::Slides(result.WidestRecord().facts) ? "slides" : ""});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
-    findings.push_back(
-        {.code = "not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
+    findings.push_back({.code = "not_identifiable",
+                        .parameters = {"alpha"},
+                        .kind = HidesInSpring(result) ? "with_spring" : "with_slip_force"});
   }
   return findings;
 }
@@ -148,7 +162,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     findings.push_back({.code = "not_identifiable",
                         .parameters = {std::string(name)},
                         .numbers = {{"lower", lower}, {"upper", upper}},
-                        .kind = "wide"});
+                        .kind = HidesInSpring(result) ? "with_spring" : "wide"});
   }
   return findings;
 }

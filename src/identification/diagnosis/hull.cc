@@ -224,11 +224,16 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
   return parameters;
 }
 
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
+ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResult& result) {
   ParameterEstimate slip_force = result.parameters[kSlipForce];
   const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
                        slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
   const bool is_forced = result.response == loop::Channel::kDisplacement;
+  // What a spring or another term carries is not the contact's.
+  const bool has_force_beside = std::ranges::any_of(fitted.free(), [&](std::size_t p) {
+    return fitted[p].term->is_linear && fitted[p].term->presence != Presence::kOffsets;
+  });
+  if (has_force_beside) return slip_force;
   // Half the distance between the medians of a few ends is known to about half its white noise.
   const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
   if (is_open && carried < slip_force.value && *slip_force.lower95 < carried) {

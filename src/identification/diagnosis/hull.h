@@ -56,7 +56,7 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
                                     const FitResult& result);
 
 /// Returns Tc; where its interval is open above its lower limit is no less than the force that the
-/// contact is seen to carry.
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
+/// contact is seen to carry: where no force beside the contact's is fitted, T*.
+ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResult& result);
 
 }  // namespace mindahl::identification

@@ -41,16 +41,21 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   return outside ? std::optional(step) : std::nullopt;
 }
 
+/// Points of the region that the data do not reject: θ of fits with a parameter held.
+using Region = std::vector<std::vector<double>>;
+
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
+  /// @param region  θ of every fit that is not rejected is appended to it
   HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
-                Solver& solver)
+                Solver& solver, Region& region)
       : fitted_(fitted),
         problem_(fitted.problem()),
         parameter_(parameter),
         options_(options),
-        solver_(solver) {
+        solver_(solver),
+        region_(region) {
     problem_.parameters.Fix(parameter, fitted.solution().theta[parameter]);
     solver_.Bind(problem_);
   }
@@ -62,7 +67,10 @@ class HeldParameter {
     const double far = std::log(thresholds.far_slip_force);
     const std::vector<double>& best = fitted_.solution().theta;
     if (far > problem_.parameters[kSlipForce].upper || far < best[kSlipForce]) return false;
-    return At(far, best) < thresholds.open_slip_force;
+    if (At(far, best) >= thresholds.open_slip_force) return false;
+    // Beside a spring σ grows with Tc: what leaves the one open leaves the other.
+    if (!problem_.parameters[kSpring].absent) region_.push_back(solution_.theta);
+    return true;
   }
 
   /// Finds the value where F is the critical one on one side of the best fit; the bound where it is
@@ -106,7 +114,9 @@ class HeldParameter {
     start[parameter_] = theta;
     solver_.HoldAt(parameter_, theta);
     solver_.Solve(start, options_, solution_);
-    return fitted_.FStatistic(parameter_, solution_.sum_of_squares);
+    const double statistic = fitted_.FStatistic(parameter_, solution_.sum_of_squares);
+    if (statistic <= fitted_.critical()) region_.push_back(solution_.theta);
+    return statistic;
   }
 
   const Estimates& fitted_;
@@ -114,6 +124,7 @@ class HeldParameter {
   std::size_t parameter_;
   SolverOptions options_;
   Solver& solver_;
+  Region& region_;
   Solution solution_;
 };
 
@@ -130,7 +141,8 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
       result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
-  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver)
+  Region region;
+  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver, region)
       .IsOpenAbove(options.thresholds);
 }
 
@@ -144,46 +156,66 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   const auto is_badly_known = [&](std::size_t p) {
     return !(fitted.HalfWidth(p) <= options.thresholds.parabola_error);
   };
-  const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force;
+  // A parallel spring may carry what the law does not: its peak is then no sign of slip.
+  const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force &&
+                     (!IsFree(fitted, kSpring) || loop::Slides(result.WidestRecord().facts));
   const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
       (!slips || result.law.shape_exponent <= options.thresholds.jenkins_shape ||
        std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
        is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options, solver));
-  if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig};
+  if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig, kSpring};
   if (is_badly_known(kStiffness)) return {kStiffness};
   return {};
+}
+
+/// Returns where the likelihood of a parameter ends, and the region that was found on the way.
+Ends ProfileIn(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
+               Solver& solver, Region& region) {
+  // With many terms most of these searches end at a bound of one; they are not repeated.
+  constexpr std::size_t kMany = 8;
+  SolverOptions search = SolverOptionsOf(options);
+  search.is_rough = fitted.problem().parameters.free().size() > kMany;
+  HeldParameter held(fitted, parameter, search, solver, region);
+  const std::optional<double> lower = held.End(-1.0);
+  const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
+  return {.lower = lower, .upper = is_open ? std::nullopt : held.End(1.0)};
 }
 
 }  // namespace
 
 Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
              Solver& solver) {
-  // With many terms most of these searches end at a bound of one; they are not repeated.
-  constexpr std::size_t kMany = 8;
-  SolverOptions search = SolverOptionsOf(options);
-  search.is_rough = fitted.problem().parameters.free().size() > kMany;
-  HeldParameter held(fitted, parameter, search, solver);
-  const std::optional<double> lower = held.End(-1.0);
-  const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
-  return {.lower = lower, .upper = is_open ? std::nullopt : held.End(1.0)};
+  Region region;
+  return ProfileIn(fitted, parameter, options, solver, region);
 }
 
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver) {
   ParameterEstimates parameters = result.parameters;
-  const double quantile = fitted.quantile();
-  for (const std::size_t p : ProfiledOf(fitted, result, options, solver)) {
-    if (!IsFree(fitted, p)) continue;
-    const auto& reported = fitted.problem().parameters.reported();
-    const auto k = static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin());
-    ParameterEstimate& estimate = parameters[k];
-    SetInterval(estimate, Profile(fitted, p, options, solver));
+  const Parameters& of_problem = fitted.problem().parameters;
+  const auto estimate_of = [&](std::size_t p) -> ParameterEstimate& {
+    const auto& reported = of_problem.reported();
+    return parameters[static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin())];
+  };
+  std::vector<std::size_t> profiled = ProfiledOf(fitted, result, options, solver);
+  std::erase_if(profiled, [&](std::size_t p) { return !IsFree(fitted, p); });
+  Region region;
+  for (const std::size_t p : profiled) {
+    SetInterval(estimate_of(p), ProfileIn(fitted, p, options, solver, region));
+  }
+  for (const std::size_t p : profiled) {
+    ParameterEstimate& estimate = estimate_of(p);
+    // The search for one parameter's end may pass what another's did not find.
+    for (const std::vector<double>& theta : region) {
+      const double value = of_problem[p].ToValue(theta[p]);
+      Include(estimate, WithinBounds(of_problem[p], {.lower = value, .upper = value}));
+    }
     if (!estimate.lower95 || !estimate.upper95) {
       estimate.standard_error.reset();
     } else if (estimate.standard_error) {
-      estimate.standard_error = (*estimate.upper95 - *estimate.lower95) / 2 / quantile;
+      estimate.standard_error = (*estimate.upper95 - *estimate.lower95) / 2 / fitted.quantile();
     }
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];

@@ -77,6 +77,7 @@ inline constexpr std::size_t kStiffness = RowOf(TermId::kSigma);
 inline constexpr std::size_t kShape = RowOf(TermId::kAlpha);
 inline constexpr std::size_t kSlipForce = RowOf(TermId::kSlipForce);
 inline constexpr std::size_t kRig = RowOf(TermId::kRigStiffness);
+inline constexpr std::size_t kSpring = RowOf(TermId::kPlateauSlope);
 inline constexpr std::size_t kLoadExponent = RowOf(TermId::kLoadExponent);
 
 /// Returns the term of where a contact is unloaded: the offset of the channel that is imposed.
