@@ -254,6 +254,10 @@ bool Selection::IsRefused(TermCandidate& candidate) const {
   // Beside a slip force of the speed a further force of speed and the slip force at rest are
   // confounded; a drag is that force with the slip force that at v₀.
   if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
+  // Short of slip a slip force of the position and its spring take the law's place.
+  if (candidate.name.starts_with("slip_position") && !loop::Slides(facts_)) {
+    candidate.obstacle = "confounded";
+  }
   if (candidate.score->is_negative) candidate.obstacle = "unphysical";
   return !candidate.obstacle.empty();
 }
@@ -419,7 +423,8 @@ TermSelection Selection::Run(FitResult law) {
   while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
   }
   FitResult last;
-  if (!IsNearlyWhite(base_.fit, Limits())) last = FitCommon(law);
+  // Short of slip the law itself has the forms of several: together they would take its place.
+  if (!IsNearlyWhite(base_.fit, Limits()) && loop::Slides(facts_)) last = FitCommon(law);
   if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
   if (IsFitted(last)) {
     // One term that leaves but noise rules out what leaves much more.

@@ -9,7 +9,7 @@ namespace mindahl::identification::term_selection_test {
 namespace {
 
 constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
-constexpr double kReach = 4e-6;  // 2 of gross slip
+constexpr double kReach = 6e-6;  // 3 of gross slip
 constexpr double kCycles = 8.3;
 constexpr int kSamplesPerCycle = 120;
 constexpr double kPeriod = 1.0;  // [s]
@@ -64,6 +64,25 @@ TEST(TermSelection, AdequateLoopGetsNoTermAndKeepsEveryDigit) {
   for (std::size_t i = 0; i < plain.parameters.size(); ++i) {
     EXPECT_EQ(selection.fit.parameters[i].value, plain.parameters[i].value);
     EXPECT_EQ(selection.fit.parameters[i].upper95, plain.parameters[i].upper95);
+  }
+}
+
+TEST(TermSelection, TermsDoNotTakeThePlaceOfALawShortOfSlip) {
+  // Friction of a guide beside a loop that reaches slip only: all common terms together, or a slip
+  // force of the position, describe it with a spring in place of half of Tc and more.
+  for (const double reach : {0.95, 1.05, 1.2}) {
+    const double amplitude = reach * GrossSlipDisplacement(kLaw);
+    Record record = Timed(LoopOf(kLaw, Cycling(Wave::kSine, amplitude, 3.5, 100)), 0.01);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const double speed = std::cos(2 * std::numbers::pi * static_cast<double>(i) / 100);
+      record.force[i] += 0.04 * kLaw.slip_force * std::tanh(speed / 0.01);
+    }
+    const TermSelection selection = Select(Noisy(record, 6));
+    SCOPED_TRACE(reach);
+    EXPECT_THAT(selection.added, Not(Contains("slip_position_quadratic")));
+    const ParameterEstimate& slip_force = *selection.fit.Find("slip_force");
+    EXPECT_LT(slip_force.lower95.value_or(0.0), kLaw.slip_force);
+    EXPECT_GT(slip_force.upper95.value_or(1e9), kLaw.slip_force);
   }
 }
 
