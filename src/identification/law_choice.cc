@@ -156,20 +156,12 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
-  // need turns that are not recorded. That alone does not decide for it, unless it leaves but noise
-  // and Masing's more.
+  // need turns that are not recorded. That does not decide for it.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
-  if (!past.empty() && is_one_amplitude) {
-    const auto leaves_more = [&](const FitResult& of) {
-      return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
-    };
-    const bool is_told = std::ranges::all_of(data.records, starts_inside) &&
-                         leaves_more(is_masing ? fit : *other) &&
-                         !leaves_more(is_masing ? *other : fit);
-    if (!is_told) return choice;
-  } else if (!past.empty()) {
+  if (!past.empty()) {
+    if (is_one_amplitude) return choice;
     FitOptions same = options;
     StartFrom(fit, same);
     const auto without = FitWithout(past, records, std::move(same));
