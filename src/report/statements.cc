@@ -127,6 +127,9 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"not_identifiable.few_places",
      "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
      "often"},
+    {"unknown_past.elsewhere",
+     "the loop began at a turn that is not recorded: start from the unloaded contact, or from the "
+     "end of a stroke as wide as any before it"},
     {"unknown_past",
      "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
      "--initial-state virgin"},

@@ -133,5 +133,35 @@ TEST(ForceAtLimit, IsOfASensorThatSaturatesAndNotOfAPlateau) {
   EXPECT_FALSE(fit.Find("alpha")->is_known());
 }
 
+TEST(UnknownPast, IsOfALoopWithinALargerOneThatIsNotRecorded) {
+  // Growing cycles from the middle of a stroke on: of a contact that was cycled twice as wide
+  // before, the virgin curve from the last turn fits as well, with another Tc.
+  constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+  const double reach = 0.7 * GrossSlipDisplacement(kLaw);
+  const auto turns = [&](std::span<const double> targets) {
+    History path{0.0};
+    for (const double target : targets) {
+      const double from = path.back();
+      for (int i = 1; i <= 50; ++i) path.push_back(from + (target - from) * i / 50.0);
+    }
+    return path;
+  };
+  const double x = reach;
+  const std::vector<double> growing = {0.3 * x, -0.44 * x, 0.58 * x, -0.72 * x, 0.86 * x, -x};
+  std::vector<double> after = {2 * x, -2 * x, 2 * x, -2 * x, 0.0};
+  const std::size_t past = after.size() * 50;
+  after.insert(after.end(), growing.begin(), growing.end());
+  for (const bool is_cycled : {false, true}) {
+    Generator generator(3);
+    const History displacement = turns(is_cycled ? after : growing);
+    const loop::Record record =
+        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+    const FitResult fit =
+        FitOne(WithForceNoise(From(record, is_cycled ? past : 0), 0.1, generator));
+    EXPECT_EQ(fit.FindFinding("unknown_past", "elsewhere") != nullptr, is_cycled);
+    EXPECT_EQ(fit.Find("slip_force")->is_known(), !is_cycled);
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::identification::diagnosis_test

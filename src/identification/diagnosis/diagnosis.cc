@@ -193,10 +193,35 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
   return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
 }
 
+/// True of a loop that does not reach slip, of a contact that is fitted as unloaded far from where
+/// the record starts, near the end of its strokes or beyond: a first branch from a turn that was
+/// not recorded has twice the reach of the virgin one, and all but its form.
+bool BeganElsewhere(const Problem& problem, const Solution& solution, const FitResult& result) {
+  constexpr double kNearEnd = 0.2;  // [half range]
+  constexpr double kFar = 0.5;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const auto [lowest, highest] = std::ranges::minmax(problem.data->records[r].excitation());
+    const double unloaded = solution.theta[problem.parameters.PositionOfOrigin(r)];
+    const double inside = std::min(unloaded - lowest, highest - unloaded);
+    const double away = std::abs(problem.data->records[r].excitation().front() - unloaded);
+    const double half = (highest - lowest) / 2;
+    if (problem.states[r] == models::InitialState::kVirgin && inside < kNearEnd * half &&
+        away > kFar * half && !loop::Slides(result.records[r].facts) &&
+        !loop::ReachesSlip(result.records[r].facts)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Records that turn less than twice and do not start where the contact is unloaded: the branch
 /// that they start on began before them, and how far it has come is not known.
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
-                                       const Thresholds& thresholds) {
+                                       const FitResult& result, const Thresholds& thresholds) {
+  if (BeganElsewhere(problem, solution, result)) {
+    return Finding{
+        .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
+  }
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
@@ -338,7 +363,7 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
   std::vector<Finding> findings;
   if (result.depth >= Depth::kIntervals) {
     if (options.initial_states.empty()) {
-      Append(findings, FindUnknownPast(problem, fitted.solution(), thresholds));
+      Append(findings, FindUnknownPast(problem, fitted.solution(), result, thresholds));
     }
     Append(findings, FindFewPlaces(problem, thresholds));
     if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records));
