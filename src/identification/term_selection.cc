@@ -186,6 +186,8 @@ class Selection {
   [[nodiscard]] bool IsAdded(std::string_view name) const {
     return std::ranges::find(added_, name) != added_.end();
   }
+  /// True of a loop that slides, a large force of the position beside it or not.
+  [[nodiscard]] bool Slides() const { return loop::Slides(facts_) || loop::HasEvenGap(facts_); }
   std::vector<TermCandidate*> Score();
   [[nodiscard]] bool IsRefused(TermCandidate& candidate) const;
   [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
@@ -255,7 +257,7 @@ bool Selection::IsRefused(TermCandidate& candidate) const {
   // confounded; a drag is that force with the slip force that at v₀.
   if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
   // Short of slip a slip force of the position and its spring take the law's place.
-  if (candidate.name.starts_with("slip_position") && !loop::Slides(facts_)) {
+  if (candidate.name.starts_with("slip_position") && !Slides()) {
     candidate.obstacle = "confounded";
   }
   if (candidate.score->is_negative) candidate.obstacle = "unphysical";
@@ -424,7 +426,7 @@ TermSelection Selection::Run(FitResult law) {
   }
   FitResult last;
   // Short of slip the law itself has the forms of several: together they would take its place.
-  if (!IsNearlyWhite(base_.fit, Limits()) && loop::Slides(facts_)) last = FitCommon(law);
+  if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon(law);
   if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
   if (IsFitted(last)) {
     // One term that leaves but noise rules out what leaves much more.

@@ -267,17 +267,21 @@ double NoiseOfEnergies(const RecordView& record) {
 
 }  // namespace
 
+bool HasEvenGap(const LoopFacts& facts) {
+  constexpr double kUneven = 0.1;
+  if (!facts.closed || !facts.half_gap || !(*facts.half_gap > 0)) return false;
+  const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
+  return std::abs(even - 1) < kUneven;
+}
+
 bool Slides(const LoopFacts& facts) {
   // [W/(4XT*)] Mindlin's contact has it at twice its gross-slip displacement, beyond which the gap
   // at mid-stroke is that of the slip force.
   constexpr double kEnergyRatio = 0.6;
   constexpr double kGap = 0.5;  // [T*] less is no plateau: the strokes were not separated
-  constexpr double kUneven = 0.1;
   const bool has_gap = facts.half_gap && *facts.half_gap > kGap * facts.peak_force;
-  if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
-  const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
-  return facts.energy_ratio >= kEnergyRatio || std::abs(even - 1) < kUneven;
+  return facts.closed && has_gap && (facts.energy_ratio >= kEnergyRatio || HasEvenGap(facts));
 }
 
 bool RanAway(const LoopFacts& facts, double slip_force) {

@@ -58,6 +58,10 @@ struct LoopFacts {
   std::optional<double> asymmetry;
 };
 
+/// True if the gap between the strokes is the same over the stroke, to a tenth of its energy: of a
+/// contact that slides, whatever force of the position lies beside it.
+bool HasEvenGap(const LoopFacts& facts);
+
 /// True if a measured loop slides over most of its stroke, so that its half gap is the slip
 /// force's, whatever the law: the gap is more than half of T*, and the energy ratio at least 0.6
 /// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
