@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numeric>
 
 #include "cli/command.h"
@@ -52,7 +53,12 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   excitation.amplitude = options.amplitude.value_or(0.0);
   if (options.lambda) {
     RequirePositive("--lambda [-]", *options.lambda);
-    excitation.amplitude = *options.lambda * GrossSlipDisplacement(law);
+    const double slip = GrossSlipDisplacement(law);
+    if (!std::isfinite(slip)) {
+      Refuse("--lambda: a law of alpha = {} has no gross-slip displacement: give --amplitude",
+             law.shape_exponent);
+    }
+    excitation.amplitude = *options.lambda * slip;
   }
   motion = models::MakeExcitation(excitation);
   if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();

@@ -22,8 +22,8 @@ using models::Memory;
 /// that the user holds, or bounds where the fit comes to lie, are of one law only.
 bool AreComparable(const FitOptions& options, const ScaledRecords& data, const FitResult& fit) {
   if (fit.law.shape_exponent <= options.thresholds.jenkins_shape) return false;
-  // Dahl's own law does not model a load that varies, and slip forces that differ it models by
-  // directions that differ in stiffness too.
+  // Under a load that varies no loop of the one law is a loop of the other; and slip forces that
+  // differ are directions that differ in stiffness too of Dahl's own.
   if (data.load_varies || fit.Find("asymmetry") != nullptr) return false;
   if (std::ranges::none_of(data.records, &ScaledRecord::Turns)) return false;
   return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {

@@ -63,6 +63,10 @@ const std::vector<Answer> kAnswers = {
      "fit @clipped.csv",
      {"the force reads 9 N in ", "the sensor is at its limit, and Tc is no less"},
      {"next ", "rejected"}},
+    {"FilesOfBothSignsOfTheForceAreNamed",
+     "fit @loop.csv @turned.csv",
+     {"check ", "turned.csv has another sign than that of the rest: turn it in the file"},
+     {"next "}},
     {"NoiseIsNoLoop", "fit @noise.csv", {"no loop is seen"}, {"Tc ", "adequate", "sliding"}},
     {"AnErrorOfAConversionStandsWithItsNumbers",
      "convert --sigma 5e7 --slip-force 15 --amplitude 3e-7 --to lugre --input-lines -",
@@ -85,6 +89,13 @@ class MisleadingAnswer : public CommandTest, public ::testing::WithParamInterfac
     std::string peak = loop[0] + "\n";
     for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";  // from a peak to the next
     Write("peak.csv", peak);
+    Write("loop.csv", fmt::format("{}\n", fmt::join(loop, "\n")));
+    std::string turned = loop[0] + "\n";
+    for (std::size_t i = 1; i < loop.size(); ++i) {
+      const std::size_t comma = loop[i].rfind(',') + 1;
+      turned += fmt::format("{}{}\n", loop[i].substr(0, comma), -std::stod(loop[i].substr(comma)));
+    }
+    Write("turned.csv", turned);
     std::string clipped = loop[0] + "\n";
     for (std::size_t i = 1; i < loop.size(); ++i) {
       const std::size_t comma = loop[i].rfind(',') + 1;

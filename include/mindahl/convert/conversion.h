@@ -71,8 +71,9 @@ struct Conversion {
 ///
 /// Masing's law and Dahl's own are one curve at X, in closed form (models/steady_loop.h). LuGre,
 /// Bouc–Wen and the spring with Coulomb's limit have the contact's peak force and energy at X, the
-/// exponent of Bouc–Wen that of the least difference of force. Jenkins elements are the tangents of
-/// the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's.
+/// exponent of Bouc–Wen that of the least difference of force in 1 … 20. Jenkins elements are the
+/// tangents of the virgin curve (MakeIwanElements), of Masing's law at X where the contact is
+/// Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
 /// @throws InvalidArgument for an invalid law or option, InputError for a normal load that the
 ///   target does not use

@@ -57,7 +57,7 @@ struct LoopError {
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude);
 
 /// Fits Bouc's and Wen's law to a loop's amplitude, peak force and energy for each n, and takes the
-/// n whose force differs least.
+/// n of 1 … 20 whose force differs least.
 BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude);
 
 /// Returns the law of a model's form, at a shape exponent, whose steady loop at an amplitude has

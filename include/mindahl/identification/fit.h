@@ -18,10 +18,9 @@ namespace mindahl::identification {
 ///   Σ w·(T_model(δ) − T)²,   T_model = Tc·t(δ; σ/Tc, α, δ₀, Tc/k_r) + Σ factor·column
 /// over non-dimensional parameters, so that the answer does not depend on the units. t is the
 /// closed form of docs/theory.md §5 with its exact gradient; there is no time step and no sampling
-/// rule. Tc and whatever else the force is linear in are eliminated (variable projection: Golub &
-/// Pereyra 1973, with Kaufman's Jacobian), so that two parameters are searched, three for a virgin
-/// contact whose origin is free. They start from a scan of the plane of σ/Tc and α on a thinned
-/// record.
+/// rule. Offsets and factors, in which the force is linear, are eliminated (variable projection:
+/// Golub & Pereyra 1973, with Kaufman's Jacobian), so that σ, α and Tc are searched, and the origin
+/// of a virgin contact. They start from a scan of the plane of σ/Tc and α on a thinned record.
 class Fitter {
  public:
   /// @throws InvalidArgument for options that break a rule whatever the records are

@@ -30,7 +30,7 @@ struct Thresholds {
   /// often. 22 terms are tried, so one loop in forty has a cause by chance.
   double rare_chance = 1e-3;
   /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
-  /// are nested loops, run-in or run-out; the same as for X and T*.
+  /// are nested loops, run-in or run-out.
   double main_stroke = 0.75;
   /// [upper over lower end] σ or Tc does not count as known if its 95 % interval is wider. A
   /// factor of three either way: the order of magnitude.
@@ -117,8 +117,8 @@ struct Thresholds {
   /// [of the range] A record that starts nearer to the end of its strokes has turned there. A
   /// virgin curve that is cut shorter shows no difference from a steady loop.
   double starts_inside = 0.1;
-  /// [of X] A contact unloaded this near to the first sample was unloaded before it. The end of a
-  /// record counts as a turning point within the same distance.
+  /// [of X] A record whose contact was unloaded this near to its first sample starts there. The end
+  /// of a record counts as a turning point within the same distance.
   double starts_unloaded = 0.02;
   /// [of half its range] A record without reversals whose first force is as small began at both
   /// zeros. Noise of the first reading is less: a force that was cut off is more.

@@ -94,8 +94,8 @@ struct ScaledRecords {
 /// Every sample that counts does so alike.
 /// The normal loads of the records are those of the options, else the means of their columns over
 /// what counts; they are a series where the largest is beyond the smallest by more than the
-/// threshold. A column that varies by more than its threshold enters the law, unless that is one
-/// without an account of it: Dahl's own, or one behind a rig. A reading below 0 is lift-off.
+/// threshold. A column that varies by more than its threshold enters the law where that knows such
+/// loads. A reading below 0 is lift-off, of Dahl's own law a load from the other side.
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 ///   more than 1e100, and for loads that are not one for all or one a record, and positive
 ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options);
