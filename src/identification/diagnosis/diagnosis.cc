@@ -193,12 +193,13 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
   return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
 }
 
-/// True of a loop that does not reach slip, of a contact that is fitted as unloaded far from where
-/// the record starts, near the end of its strokes or beyond: a first branch from a turn that was
-/// not recorded has twice the reach of the virgin one, and all but its form.
+/// True of Masing's loop that does not reach slip, of a contact that is fitted as unloaded far from
+/// where the record starts, near the end of its strokes or beyond: a first branch from a turn that
+/// was not recorded has twice the reach of the virgin one, and all but its form.
 bool BeganElsewhere(const Problem& problem, const Solution& solution, const FitResult& result) {
   constexpr double kNearEnd = 0.2;  // [half range]
   constexpr double kFar = 0.5;
+  if (result.model->memory == models::Memory::kNone) return false;  // it starts at any force
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const auto [lowest, highest] = std::ranges::minmax(problem.data->records[r].excitation());
     const double unloaded = solution.theta[problem.parameters.PositionOfOrigin(r)];

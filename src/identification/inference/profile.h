@@ -12,7 +12,8 @@
 /// Far from gross slip a loop depends on σ and α/Tc, and weakly on the rest (docs/theory.md §10):
 /// the likelihood is a long curved valley along which Tc, and α with it, may change many times at
 /// little cost. The Jacobian at the best fit sees its floor there and no further. Beside a rig σ, α
-/// and k share another, which bends towards the rigid rig.
+/// and k share another, which bends towards the rigid rig; beside a parallel spring σ and its
+/// slope.
 namespace mindahl::identification {
 
 /// Returns the ends of the interval of a parameter, where F of the best fit against those with it
@@ -22,9 +23,11 @@ namespace mindahl::identification {
 Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
              Solver& solver);
 
-/// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig of
-/// which the parabola may be wrong: of a loop that hardly slips, at a bound, and where they are
-/// badly known. The standard error follows. Where Tc is open above, so is α.
+/// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig or
+/// parallel spring of which the parabola may be wrong: of a loop that hardly slips, or does not
+/// slide beside a spring, at a bound, and where they are badly known. They include every fit that
+/// is not rejected on the way to an end of any. The standard error follows. Where Tc is open above,
+/// so is α.
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver);
 
