@@ -156,12 +156,23 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
   // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
-  // need turns that are not recorded. That does not decide for it.
+  // need turns that are not recorded. That does not decide for it, unless the loop is short of
+  // slip, where no such turns give Masing's contact the loop of Dahl's, and Dahl's leaves but
+  // noise.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
   if (!past.empty()) {
-    if (is_one_amplitude) return choice;
+    const loop::LoopFacts& facts = fit.WidestRecord().facts;
+    const auto leaves_more = [&](const FitResult& of) {
+      return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
+    };
+    const bool is_told = !loop::Slides(facts) && !loop::ReachesSlip(facts) &&
+                         leaves_more(is_masing ? fit : *other) &&
+                         !leaves_more(is_masing ? *other : fit);
+    if (is_one_amplitude && !is_told) return choice;
+  }
+  if (!past.empty() && !is_one_amplitude) {
     FitOptions same = options;
     StartFrom(fit, same);
     const auto without = FitWithout(past, records, std::move(same));
