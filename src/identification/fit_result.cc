@@ -78,8 +78,7 @@ double FitResult::MisfitScale() const {
   const RecordFit& widest = WidestRecord();
   if (response == loop::Channel::kDisplacement) return widest.facts.amplitude;
   const std::optional<double> half_gap = MeasuredHalfGap();
-  const bool slips = loop::Slides(widest.facts) || loop::ReachesSlip(widest.facts);
-  return half_gap && slips ? *half_gap : PeakForce();
+  return half_gap && loop::HasSlipped(widest.facts) ? *half_gap : PeakForce();
 }
 
 std::size_t FitResult::CountFreeParameters() const {

@@ -87,10 +87,7 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
       const std::string_view shapes = parameters[q].term->shapes;
       return !shapes.empty() && term.name.starts_with(shapes);
     });
-    if (!term.is_linear || term.presence == Presence::kOffsets || !parameters[p].fixed ||
-        theta[p] == 0 || is_shaped) {
-      continue;
-    }
+    if (!term.adds_force() || !parameters[p].fixed || theta[p] == 0 || is_shaped) continue;
     AddColumn(problem, p, theta, -theta[p] * data.force * prepared.force_sense, known);
   }
   if (std::ranges::all_of(known, [](double force) { return force == 0; })) return;

@@ -162,17 +162,15 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
-  if (!past.empty()) {
-    const loop::LoopFacts& facts = fit.WidestRecord().facts;
+  if (!past.empty() && is_one_amplitude) {
     const auto leaves_more = [&](const FitResult& of) {
       return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
     };
-    const bool is_told = !loop::Slides(facts) && !loop::ReachesSlip(facts) &&
+    const bool is_told = !loop::HasSlipped(fit.WidestRecord().facts) &&
                          leaves_more(is_masing ? fit : *other) &&
                          !leaves_more(is_masing ? *other : fit);
-    if (is_one_amplitude && !is_told) return choice;
-  }
-  if (!past.empty() && !is_one_amplitude) {
+    if (!is_told) return choice;
+  } else if (!past.empty()) {
     FitOptions same = options;
     StartFrom(fit, same);
     const auto without = FitWithout(past, records, std::move(same));

@@ -297,6 +297,8 @@ bool ReachesSlip(const LoopFacts& facts) {
   return facts.energy_per_cycle >= 0.85 * rectangle;
 }
 
+bool HasSlipped(const LoopFacts& facts) { return Slides(facts) || ReachesSlip(facts); }
+
 double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
   const Column x = record.displacement;
   // Forces relative to the first sample: an offset must not cost digits on a small loop.

@@ -165,18 +165,18 @@ std::string DifferentLoads(const Report& report) {
 /// Files whose loops take energy of a sign of their own: one sign is fitted to all.
 std::string OppositeSigns(const Report& report) {
   constexpr double kClear = 0.05;  // [W/(4XT*)]
+  if (report.fit.records.size() < 2) return "";
   std::string names;
   for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
     const loop::LoopFacts& facts = report.fit.records[r].facts;
     if (!facts.closed || !(facts.energy_ratio < -kClear)) continue;
     names += (names.empty() ? "" : ", ") + report.records[r].name;
   }
-  return names.empty() || report.fit.records.size() < 2
-             ? ""
-             : fmt::format(
-                   "the force of {} has another sign than that of the rest: turn it in the "
-                   "file, or mindahl batch",
-                   names);
+  if (names.empty()) return "";
+  return fmt::format(
+      "the force of {} has another sign than that of the rest: turn it in the file, or mindahl "
+      "batch",
+      names);
 }
 
 std::string WhatToCheck(const Report& report) {

@@ -90,19 +90,17 @@ class MisleadingAnswer : public CommandTest, public ::testing::WithParamInterfac
     for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";  // from a peak to the next
     Write("peak.csv", peak);
     Write("loop.csv", fmt::format("{}\n", fmt::join(loop, "\n")));
-    std::string turned = loop[0] + "\n";
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-      const std::size_t comma = loop[i].rfind(',') + 1;
-      turned += fmt::format("{}{}\n", loop[i].substr(0, comma), -std::stod(loop[i].substr(comma)));
-    }
-    Write("turned.csv", turned);
-    std::string clipped = loop[0] + "\n";
-    for (std::size_t i = 1; i < loop.size(); ++i) {
-      const std::size_t comma = loop[i].rfind(',') + 1;
-      const double force = std::stod(loop[i].substr(comma));
-      clipped += fmt::format("{}{}\n", loop[i].substr(0, comma), std::clamp(force, -9.0, 9.0));
-    }
-    Write("clipped.csv", clipped);
+    const auto write_with = [&](const char* name, const auto& change) {  // of the last column
+      std::string changed = loop[0] + "\n";
+      for (std::size_t i = 1; i < loop.size(); ++i) {
+        const std::size_t comma = loop[i].rfind(',') + 1;
+        const double force = std::stod(loop[i].substr(comma));
+        changed += fmt::format("{}{}\n", loop[i].substr(0, comma), change(force));
+      }
+      Write(name, changed);
+    };
+    write_with("turned.csv", [](double force) { return -force; });
+    write_with("clipped.csv", [](double force) { return std::clamp(force, -9.0, 9.0); });
     Generator generator(1);
     std::string noise = "x [um],F [N]\n";
     for (int i = 0; i < 400; ++i) {

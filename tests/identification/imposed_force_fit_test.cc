@@ -96,6 +96,7 @@ TEST(ImposedForceFit, SlipForceFarFromWhatWasReachedIsALowerLimit) {
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   EXPECT_EQ(slip_force.identifiability, Identifiability::kBoundedBelow);
   ASSERT_TRUE(slip_force.lower95.has_value());
+  EXPECT_GE(*slip_force.lower95, 0.999 * 0.25 * kSlipForce) << "it was carried";
   EXPECT_LE(*slip_force.lower95, kSlipForce);
   EXPECT_FALSE(slip_force.upper95.has_value());
 }

@@ -119,6 +119,10 @@ struct Term {
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
 
+  /// True of the factor of a force in addition to the contact's.
+  [[nodiscard]] constexpr bool adds_force() const {
+    return is_linear && presence != Presence::kAlways && presence != Presence::kOffsets;
+  }
   /// Returns the scale of the values, in the unit of the parameter.
   [[nodiscard]] double scale(const TermUnits& units) const;
   /// Returns the value at θ = 0 of one that is not positive, likewise.

@@ -77,6 +77,9 @@ bool RanAway(const LoopFacts& facts, double slip_force);
 /// π/4. A spring parallel to the contact hides it.
 bool ReachesSlip(const LoopFacts& facts);
 
+/// True if a measured loop slides over most of its stroke or reaches its slip force at the ends.
+bool HasSlipped(const LoopFacts& facts);
+
 /// Returns ∮ T dδ [J] from one sample to a later one, trapezoidal, closed by a chord.
 /// @throws InvalidArgument when it overflows
 double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last);

@@ -207,8 +207,7 @@ bool BeganElsewhere(const Problem& problem, const Solution& solution, const FitR
     const double away = std::abs(problem.data->records[r].excitation().front() - unloaded);
     const double half = (highest - lowest) / 2;
     if (problem.states[r] == models::InitialState::kVirgin && inside < kNearEnd * half &&
-        away > kFar * half && !loop::Slides(result.records[r].facts) &&
-        !loop::ReachesSlip(result.records[r].facts)) {
+        away > kFar * half && !loop::HasSlipped(result.records[r].facts)) {
       return true;
     }
   }

@@ -206,8 +206,7 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
   const double load_ratio = result.WidestRecord().load_ratio;
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
-  const bool has_slipped = loop::Slides(facts) || loop::ReachesSlip(facts);
-  if (!is_free || !half_gap || !has_slipped) return parameters;
+  if (!is_free || !half_gap || !loop::HasSlipped(facts)) return parameters;
 
   const double margin =
       std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, result.adequacy.misfit);
@@ -228,15 +227,14 @@ ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResul
   ParameterEstimate slip_force = result.parameters[kSlipForce];
   const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
                        slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
+  // A fitted force in addition to the contact's may be a part of T*.
+  const bool has_added_force = std::ranges::any_of(
+      fitted.free(), [&](std::size_t p) { return fitted[p].term->adds_force(); });
+  if (!is_open || has_added_force) return slip_force;
   const bool is_forced = result.response == loop::Channel::kDisplacement;
-  // What a spring or another term carries is not the contact's.
-  const bool has_force_beside = std::ranges::any_of(fitted.free(), [&](std::size_t p) {
-    return fitted[p].term->is_linear && fitted[p].term->presence != Presence::kOffsets;
-  });
-  if (has_force_beside) return slip_force;
   // Half the distance between the medians of a few ends is known to about half its white noise.
   const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
-  if (is_open && carried < slip_force.value && *slip_force.lower95 < carried) {
+  if (carried < slip_force.value && *slip_force.lower95 < carried) {
     SetInterval(slip_force, {.lower = carried});
   }
   return slip_force;

@@ -41,21 +41,21 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   return outside ? std::optional(step) : std::nullopt;
 }
 
-/// Points of the region that the data do not reject: θ of fits with a parameter held.
-using Region = std::vector<std::vector<double>>;
+bool IsFree(const Estimates& fitted, std::size_t parameter) {
+  const Parameter& of = fitted.problem().parameters[parameter];
+  return !of.fixed && !of.absent;
+}
 
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
-  /// @param region  θ of every fit that is not rejected is appended to it
   HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
-                Solver& solver, Region& region)
+                Solver& solver)
       : fitted_(fitted),
         problem_(fitted.problem()),
         parameter_(parameter),
         options_(options),
-        solver_(solver),
-        region_(region) {
+        solver_(solver) {
     problem_.parameters.Fix(parameter, fitted.solution().theta[parameter]);
     solver_.Bind(problem_);
   }
@@ -69,9 +69,12 @@ class HeldParameter {
     if (far > problem_.parameters[kSlipForce].upper || far < best[kSlipForce]) return false;
     if (At(far, best) >= thresholds.open_slip_force) return false;
     // Beside a spring σ grows with Tc: what leaves the one open leaves the other.
-    if (!problem_.parameters[kSpring].absent) region_.push_back(solution_.theta);
+    if (IsFree(fitted_, kSpring)) region_.push_back(solution_.theta);
     return true;
   }
+
+  /// Returns θ of the fits so far that are not rejected.
+  [[nodiscard]] const std::vector<std::vector<double>>& region() const { return region_; }
 
   /// Finds the value where F is the critical one on one side of the best fit; the bound where it is
   /// less up to there; nothing where that is a limit of the search, or F is less for a factor of a
@@ -124,14 +127,9 @@ class HeldParameter {
   std::size_t parameter_;
   SolverOptions options_;
   Solver& solver_;
-  Region& region_;
+  std::vector<std::vector<double>> region_;
   Solution solution_;
 };
-
-bool IsFree(const Estimates& fitted, std::size_t parameter) {
-  const Parameter& of = fitted.problem().parameters[parameter];
-  return !of.fixed && !of.absent;
-}
 
 /// True if a loop that hardly dissipates leaves open that it is far from slip.
 bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const FitOptions& options,
@@ -141,8 +139,7 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
       result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
-  Region region;
-  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver, region)
+  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver)
       .IsOpenAbove(options.thresholds);
 }
 
@@ -170,25 +167,19 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   return {};
 }
 
-/// Returns where the likelihood of a parameter ends, and the region that was found on the way.
-Ends ProfileIn(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-               Solver& solver, Region& region) {
+}  // namespace
+
+Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
+                 Solver& solver) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = fitted.problem().parameters.free().size() > kMany;
-  HeldParameter held(fitted, parameter, search, solver, region);
+  HeldParameter held(fitted, parameter, search, solver);
   const std::optional<double> lower = held.End(-1.0);
   const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
-  return {.lower = lower, .upper = is_open ? std::nullopt : held.End(1.0)};
-}
-
-}  // namespace
-
-Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-             Solver& solver) {
-  Region region;
-  return ProfileIn(fitted, parameter, options, solver, region);
+  const std::optional<double> upper = is_open ? std::nullopt : held.End(1.0);
+  return {.ends = {.lower = lower, .upper = upper}, .region = held.region()};
 }
 
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
@@ -201,9 +192,11 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   };
   std::vector<std::size_t> profiled = ProfiledOf(fitted, result, options, solver);
   std::erase_if(profiled, [&](std::size_t p) { return !IsFree(fitted, p); });
-  Region region;
+  std::vector<std::vector<double>> region;
   for (const std::size_t p : profiled) {
-    SetInterval(estimate_of(p), ProfileIn(fitted, p, options, solver, region));
+    const Profiled profile = Profile(fitted, p, options, solver);
+    SetInterval(estimate_of(p), profile.ends);
+    region.insert(region.end(), profile.region.begin(), profile.region.end());
   }
   for (const std::size_t p : profiled) {
     ParameterEstimate& estimate = estimate_of(p);

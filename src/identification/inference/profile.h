@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "identification/inference/estimates.h"
 #include "identification/solve/search.h"
@@ -16,12 +17,18 @@
 /// slope.
 namespace mindahl::identification {
 
+/// Holds what the likelihood says of a parameter.
+struct Profiled {
+  Ends ends;                                ///< its interval
+  std::vector<std::vector<double>> region;  ///< θ of the fits on the way that are not rejected
+};
+
 /// Returns the ends of the interval of a parameter, where F of the best fit against those with it
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
 /// the largest force that is not clearly rejected.
-Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-             Solver& solver);
+Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
+                 Solver& solver);
 
 /// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig or
 /// parallel spring of which the parabola may be wrong: of a loop that hardly slips, or does not
