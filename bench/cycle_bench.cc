@@ -74,7 +74,7 @@ const std::vector<campaign::Cycle>& Cycles() {
 const FitOptions& OfSteadyCycles() {
   static const FitOptions options = [] {
     FitOptions made;
-    made.initial_states = {models::InitialState::kSteady};
+    made.initial_state = models::InitialState::kSteady;
     campaign::ChooseGate(Campaign(), made);
     return made;
   }();
@@ -106,9 +106,7 @@ void Search(benchmark::State& state) {
   const loop::RecordView view(Cycles().front().record);
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   const identification::ScaledRecords data = identification::Scale(prepared, options);
-  const identification::Problem problem{
-      &data, options.model, options.initial_states,
-      identification::Parameters(data, options, options.initial_states)};
+  const identification::Problem problem(data, options, models::InitialState::kSteady);
   identification::Solver solver;
   solver.Bind(problem);
   std::vector<std::vector<double>> starts;

@@ -66,7 +66,7 @@ int main() {
 
     // The motion identifies the contact that made it.
     identification::Fitter fitter(
-        {.model = &model, .initial_states = {models::InitialState::kVirgin}});
+        {.model = &model, .initial_state = models::InitialState::kVirgin});
     const identification::FitResult& fit = fitter.Fit(loop::RecordView(displacement, force));
     const double stiffness_error = fit.law.tangential_stiffness / law.tangential_stiffness - 1;
     const double slip_error = fit.law.slip_force / law.slip_force - 1;

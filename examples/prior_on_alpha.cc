@@ -59,7 +59,7 @@ int main() {
   for (const double x : displacement) force.push_back(contact.Move(x) + noise(generator));
 
   identification::FitOptions options;
-  options.initial_states = {models::InitialState::kVirgin};
+  options.initial_state = models::InitialState::kVirgin;
   const loop::RecordView record(displacement, force);
   identification::Fitter fitter(options);
   const identification::FitResult& fit = fitter.Fit(record);

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   const loop::Record record = io::ReadRecord(argv[1]).record;
   // Gate and sense are found once, as `mindahl track` does.
   identification::FitOptions options;
-  options.initial_states = {models::InitialState::kSteady};
+  options.initial_state = models::InitialState::kSteady;
   campaign::ChooseGate(record, options);
   const std::vector<Cycle> cycles = CyclesOf(record, *options.preparation.reversal_gate);
   if (cycles.empty()) {

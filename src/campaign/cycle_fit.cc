@@ -38,7 +38,7 @@ constexpr std::array kFlags = {
 };
 
 FitOptions OfSteadyCycles(FitOptions options) {
-  if (options.initial_states.empty()) options.initial_states = {models::InitialState::kSteady};
+  if (!options.initial_state) options.initial_state = models::InitialState::kSteady;
   return options;
 }
 

@@ -240,10 +240,10 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   group.AddChoice("--model", fit.model, std::move(models), DescribeModels());
   group.AddFlag("--compare", options.compare,
                 "list all models, with and without a rig, by AICc and held-out cycles");
-  group.AddChoice("--initial-state", fit.initial_states,
+  group.AddChoice("--initial-state", fit.initial_state,
                   {{"auto", {}},
-                   {"virgin", {models::InitialState::kVirgin}},
-                   {"steady", {models::InitialState::kSteady}}},
+                   {"virgin", models::InitialState::kVirgin},
+                   {"steady", models::InitialState::kSteady}},
                   "virgin: the record starts from an unloaded contact; steady: from a\ncycled one");
   group.AddChoice("--force-sign", fit.preparation.force_sense,
                   {{"auto", {}}, {"same", 1}, {"opposite", -1}},

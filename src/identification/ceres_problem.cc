@@ -44,12 +44,10 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
   AddColumns(options, prepared, data);
-  std::vector<models::InitialState> states;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
-    states.push_back(fit.records[r].initial_state);
     data.records[r].turns_between = fit.records[r].turns_between;
   }
-  problem = Problem{&data, options.model, states, Parameters(data, options, states)};
+  problem.emplace(data, options, fit.initial_state);
   unit = residual_unit / data.response_unit();
   const std::vector<std::size_t> of_residual = UnprojectedResidual::BlocksOf(*problem);
   const Parameters& parameters = problem->parameters;

@@ -32,15 +32,9 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
-/// Refuses initial states that are neither none nor one a record, loads that differ or vary in a
-/// fit of the displacement, which is that of one load, and noise of which squares overflow.
+/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load, and
+/// noise of which squares overflow.
 void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
-  const std::size_t states = options.initial_states.size();
-  if (states > 1 && states != data.records.size()) {
-    throw InvalidArgument(
-        fmt::format("{} initial states for {} records: give one for all, or one a record", states,
-                    data.records.size()));
-  }
   const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
@@ -75,8 +69,7 @@ void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRe
 void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& data,
                               loop::PreparedRecords& prepared) {
   if (options.fixed.empty() || data.is_forced()) return;
-  const std::vector states(data.records.size(), InitialState::kVirgin);
-  const Problem problem{&data, options.model, states, Parameters(data, options, states)};
+  const Problem problem(data, options, InitialState::kVirgin);
   const Parameters& parameters = problem.parameters;
   std::vector<double> theta;
   for (const Parameter& parameter : parameters) theta.push_back(parameter.theta);
@@ -149,7 +142,6 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
     RecordFit& fit = result.records.emplace_back();
     static_cast<loop::RecordReading&>(fit) = prepared;
-    fit.initial_state = solved.best.problem.states[r];
     fit.turns_between = data.records[r].turns_between;
     if (data.is_forced()) fit.displacement_noise = solved.noise.force * data.length;
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
@@ -178,8 +170,7 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
     Append(result.findings, FindInRecords(result.records));
     Append(result.findings, FindVaryingLoads(data));
   }
-  result.initial_state =
-      AnyIsVirgin(problem.states) ? InitialState::kVirgin : InitialState::kSteady;
+  result.initial_state = problem.initial_state;
   result.solver = solution.report;
   result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {

@@ -116,10 +116,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                          : models::MasingEquivalent(fit.law, amplitude);
   FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
-  const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
-    return record.initial_state == InitialState::kSteady;
-  });
-  const bool is_open = options.initial_states.empty();
+  const bool is_steady = fit.initial_state == InitialState::kSteady;
+  const bool is_open = !options.initial_state;
   const double step = data.is_forced() ? 0.0 : fit.EncoderStep() / data.length;
   const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
   const bool is_one_curve = is_steady && is_one_amplitude;
@@ -130,7 +128,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   };
   if (is_one_curve) {
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
-    others.initial_states = {InitialState::kVirgin};
+    others.initial_state = InitialState::kVirgin;
   }
   if (step > options.thresholds.coarse_step) return choice;
   const std::optional<FitResult> other = FitWithout({}, records, others);

@@ -88,7 +88,7 @@ Record MindlinRecord(const Case& drawn) {
 double StandardizedDistance(const Record& record, const models::BranchLaw& truth,
                             const FitResult& fit) {
   FitOptions options;
-  options.initial_states = {fit.initial_state};
+  options.initial_state = fit.initial_state;
   options.fixed = {{"sigma", truth.tangential_stiffness},
                    {"alpha", truth.shape_exponent},
                    {"slip_force", truth.slip_force}};

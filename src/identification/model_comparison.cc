@@ -115,7 +115,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     least = std::min(least, scores[i].aicc);
     if (cycles.empty()) continue;
     FitOptions& from_here = asked[i];
-    HoldInitialStates(fits[i], from_here);
+    from_here.initial_state = fits[i].initial_state;
     StartFrom(fits[i], from_here);
     from_here.preparation.force_sense = fits[i].force_sense;
     scores[i].held_out_rms = PredictCycles(records, from_here, best, cycles);

@@ -54,7 +54,7 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
 /// Returns the options of a fit of the loop, from the values that are expected.
 FitOptions OptionsOf(const Expectation& expected) {
   FitOptions options;
-  options.initial_states = {models::InitialState::kSteady};
+  options.initial_state = models::InitialState::kSteady;
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
@@ -74,7 +74,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
-  Candidate candidate(data, options, options.initial_states);
+  Candidate candidate(data, options, models::InitialState::kSteady);
   const Problem& problem = candidate.problem;
   Solution& solution = candidate.solution;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);

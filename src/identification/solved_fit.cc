@@ -44,21 +44,15 @@ void RequireToldAsymmetry(const Problem& problem) {
       "with --initial-state virgin");
 }
 
-using States = std::vector<InitialState>;  // of each record
-
-/// Returns the initial states that the options name, else an unloaded and a cycled contact, where
-/// both are possible.
-std::vector<States> StatesToTry(const Attempt& attempt) {
-  const std::vector<InitialState>& given = attempt.options.initial_states;
-  const std::size_t records = attempt.data.records.size();
-  if (given.size() > 1) return {given};
-  if (given.size() == 1) return {States(records, given.front())};
+/// Returns the initial state that the options name, else both where both are possible.
+std::vector<InitialState> StatesToTry(const Attempt& attempt) {
+  if (attempt.options.initial_state) return {*attempt.options.initial_state};
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(TermOf(OriginId(attempt.data.excitation)).name);
   });
-  std::vector<States> states = {States(records, InitialState::kVirgin)};
+  std::vector<InitialState> states = {InitialState::kVirgin};
   if (!unloaded_is_given && std::ranges::any_of(attempt.data.records, &ScaledRecord::Turns)) {
-    states.emplace_back(records, InitialState::kSteady);
+    states.push_back(InitialState::kSteady);
   }
   return states;
 }
@@ -68,7 +62,7 @@ std::vector<States> StatesToTry(const Attempt& attempt) {
 bool IsUnloadedAtLimit(const Candidate& candidate) {
   if (!std::isfinite(candidate.solution.sum_of_squares)) return false;  // none was made
   const Parameters& parameters = candidate.problem.parameters;
-  for (std::size_t r = 0; r < candidate.problem.states.size(); ++r) {
+  for (std::size_t r = 0; r < candidate.problem.data->records.size(); ++r) {
     const std::size_t origin = parameters.PositionOfOrigin(r);
     if (IsSearchLimit(parameters[origin], candidate.solution.side[origin])) return true;
   }
@@ -88,8 +82,8 @@ SolvedFit FitBestState(const Attempt& attempt) {
     SearchBesideMinimum(candidate, options, attempt.solver);
   };
   std::vector<Candidate> candidates;
-  for (const States& states : StatesToTry(attempt)) {
-    candidates.emplace_back(attempt.data, options, states);
+  for (const InitialState state : StatesToTry(attempt)) {
+    candidates.emplace_back(attempt.data, options, state);
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }
   std::vector<double> costs;  // at the best starts

@@ -87,10 +87,9 @@ Scorer::Scorer(std::span<const loop::RecordView> records, const FitResult& fit,
 }
 
 Problem Scorer::ProblemOf(FitOptions options) const {
-  const std::vector states(data_.records.size(), fit_.initial_state);
   options.covariates = covariates_;
   options.start.clear();
-  return {&data_, options.model, states, Parameters(data_, options, states)};
+  return Problem(data_, options, fit_.initial_state);
 }
 
 bool Scorer::WasFree(const Problem& problem, std::size_t p) const {

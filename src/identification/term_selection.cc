@@ -286,7 +286,7 @@ Selection::Model Selection::FitWith(const TermChoice& choice, bool from_here) {
   Model model{.options = choice.AddedTo(base_.options), .fit = {}};
   FitOptions options = model.options;
   if (from_here) {
-    HoldInitialStates(base_.fit, options);
+    options.initial_state = base_.fit.initial_state;
     StartFrom(base_.fit, options);
   }
   options.preparation.force_sense = base_.fit.force_sense;

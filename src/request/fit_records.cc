@@ -92,8 +92,8 @@ void KeepTests(const FitRequest& request, FitOptions& options, report::ReportInp
     io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
-  if (all_cycled && options.initial_states.empty()) {
-    options.initial_states = {models::InitialState::kSteady};
+  if (all_cycled && !options.initial_state) {
+    options.initial_state = models::InitialState::kSteady;
   }
 }
 
@@ -318,7 +318,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
   if (!request.chooses_terms) return "";
   FitOptions of_head = options;
   // The head is fitted like its cycles: an asymmetry is then an offset of each.
-  of_head.initial_states = {models::InitialState::kSteady};
+  of_head.initial_state = models::InitialState::kSteady;
   const TermSelection selection =
       identification::SelectTerms({&head, 1}, of_head, identification::Fitter(of_head).Fit(head));
   options.terms = selection.options.terms;

@@ -54,7 +54,7 @@ TEST(CycleFitter, HasNoFrictionCoefficientUnderALoadOfTheOtherSign) {
 
 TEST(CycleFitter, HasTheMinimumAndTheErrorsOfAFitAlone) {
   constexpr double kSolverTolerance = 1e-2;  // standard errors, as of Fitter::Continue()
-  const identification::FitOptions options{.initial_states = {models::InitialState::kSteady}};
+  const identification::FitOptions options{.initial_state = models::InitialState::kSteady};
   CycleFitter fitter(options);
   for (const Cycle& cycle : CyclesOf(TestRecord(60))) {
     const CycleFit fit = fitter.Fit(cycle);

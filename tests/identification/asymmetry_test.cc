@@ -68,9 +68,8 @@ TEST(Asymmetry, OfACycledContactFollowsFromTheKnownZeroOfTheForce) {
   EXPECT_NEAR(fit.Find("asymmetry")->value, 0.25, kNoiseFree);
   EXPECT_EQ(fit.Find("asymmetry")->identifiability, Identifiability::kIdentifiable);
   // Without offsets the zero is the file's.
-  const FitResult literal =
-      FitOne(steady,
-             {.initial_states = {InitialState::kSteady}, .offsets = false, .terms = {"asymmetry"}});
+  const FitResult literal = FitOne(
+      steady, {.initial_state = InitialState::kSteady, .offsets = false, .terms = {"asymmetry"}});
   EXPECT_NEAR(literal.Find("asymmetry")->value, 0.25, kNoiseFree);
 }
 
@@ -91,7 +90,7 @@ TEST(Asymmetry, IsRefusedForCycledContactWithFittedForceOffset) {
   // it tells no more.
   const Record steady = From(LoopOf(0.25, 1.5, 3.25), 200);
   const FitResult as_virgin =
-      FitOne(steady, {.initial_states = {InitialState::kVirgin}, .terms = {"asymmetry"}});
+      FitOne(steady, {.initial_state = InitialState::kVirgin, .terms = {"asymmetry"}});
   EXPECT_EQ(as_virgin.Find("asymmetry")->identifiability, Identifiability::kNotIdentifiable);
   // A value that is known is no question: the offset is what is left.
   const FitResult fit =
@@ -101,7 +100,7 @@ TEST(Asymmetry, IsRefusedForCycledContactWithFittedForceOffset) {
 }
 
 TEST(Asymmetry, OfACycledContactThatNeverSlipsAsAWholeIsNotIdentified) {
-  const FitOptions options{.initial_states = {InitialState::kSteady},
+  const FitOptions options{.initial_state = InitialState::kSteady,
                            .terms = {"asymmetry"},
                            .fixed = {{"force_offset", 0.0}}};
   Generator generator(3);
@@ -123,7 +122,7 @@ TEST(Asymmetry, IsIdentifiedByEveryRecordWithKnownForceZero) {
   const auto verdict = [&](const std::map<std::string, double>& known) {
     const FitResult fit = identification::Fit(
         std::vector<Record>{slipping, partial},
-        {.initial_states = {InitialState::kSteady}, .terms = {"asymmetry"}, .fixed = known});
+        {.initial_state = InitialState::kSteady, .terms = {"asymmetry"}, .fixed = known});
     return fit.Find("asymmetry")->identifiability;
   };
   EXPECT_EQ(verdict({{"force_offset_1", 0}}), Identifiability::kIdentifiable);

@@ -54,7 +54,7 @@ TEST(Backlash, IsRecoveredFromASteadyLoopOfDahlsOwnLaw) {
   // From a turning point on, when the first loading is forgotten.
   const auto cut = static_cast<std::size_t>(static_cast<double>(record.size()) / 8.25 * 6);
   const FitOptions options{
-      .model = &Model("dahl"), .initial_states = {InitialState::kSteady}, .terms = {"backlash"}};
+      .model = &Model("dahl"), .initial_state = InitialState::kSteady, .terms = {"backlash"}};
   // The loop of exp(−2σX/Tc) = 1e-3 a stroke has settled to 1e-18 of its slip force; its centre is
   // that of the sampled extremes, which lie half a sample's sine of 1e-4 off.
   constexpr double kSampled = 1e-3;

@@ -28,7 +28,7 @@ Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, dou
 
 FitOptions OptionsOf(const std::string& model, std::string_view group) {
   FitOptions options{.model = &Model(model),
-                     .initial_states = {InitialState::kVirgin},
+                     .initial_state = InitialState::kVirgin,
                      .preparation = {.force_sense = 1}};
   if (group.empty()) return options;
   const std::vector<std::string_view>& terms = FindTermGroup(group)->terms;

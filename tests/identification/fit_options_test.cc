@@ -40,7 +40,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
       {{.model = &Model("mindlin"), .fixed = {{"alpha", 0.5}}},
        "alpha cannot be fixed at 0.5: the model 'mindlin' prescribes alpha = 0.3333333333333333; "
        "use mindlin-dahl"},
-      {{.initial_states = {InitialState::kSteady}, .fixed = {{"displacement_offset", 0}}},
+      {{.initial_state = InitialState::kSteady, .fixed = {{"displacement_offset", 0}}},
        "displacement_offset cannot be fixed: that of a steady contact is the centre of its loop; "
        "fix it for a virgin contact"},
       {{.start = {{"alpha", 0.75}}, .bounds = {{"alpha", {0.1, 0.5}}}},
@@ -108,7 +108,7 @@ TEST(FitOptions, FixedParametersKeepTheirValueAndFreeTheRest) {
 }
 
 TEST(FitOptions, FixingEveryParameterEvaluatesTheModelThere) {
-  const FitResult fit = FitOne(Loop(), {.initial_states = {InitialState::kVirgin},
+  const FitResult fit = FitOne(Loop(), {.initial_state = InitialState::kVirgin,
                                         .fixed = {{"sigma", kLaw.tangential_stiffness},
                                                   {"alpha", kLaw.shape_exponent},
                                                   {"slip_force", kLaw.slip_force},

@@ -53,7 +53,7 @@ TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
 }
 
 TEST(Fit, StateThatIsGivenIsKept) {
-  EXPECT_EQ(FitOne(Loop(), {.initial_states = {InitialState::kSteady}}).initial_state,
+  EXPECT_EQ(FitOne(Loop(), {.initial_state = InitialState::kSteady}).initial_state,
             InitialState::kSteady);
   EXPECT_EQ(FitOne(From(Loop(3.0), 95), Virgin()).initial_state, InitialState::kVirgin);
 }

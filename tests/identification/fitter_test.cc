@@ -144,7 +144,7 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
   }
 }
 
-FitOptions OfSteadyCycles() { return {.initial_states = {InitialState::kSteady}}; }
+FitOptions OfSteadyCycles() { return {.initial_state = InitialState::kSteady}; }
 
 /// One steady cycle, from a turning point to the next but one.
 Record NoisyCycle(std::uint64_t seed, double scale = 1.0) {

@@ -55,7 +55,7 @@ TEST(ImposedForceFit, RecoversVirginAndSteadyLoopsByTheirOwnLaw) {
     FitOptions options = OfDisplacement(model);
     const Record loop = ForcedLoop(law, 0.9, model);
     EXPECT_TRUE(Recovers(FitOne(loop, options), law, testing::kNoiseFree));
-    options.initial_states = {InitialState::kSteady};
+    options.initial_state = InitialState::kSteady;
     const FitResult fit = FitOne(From(loop, kSamplesPerCycle), options);
     EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
     EXPECT_EQ(fit.Find("force_offset")->status, ParameterStatus::kFixed);
@@ -106,7 +106,7 @@ TEST(ImposedForceFit, SlipForceOfASteadyLoopIsAtLeastTheLargestForce) {
   Generator generator(1);
   const Record loop = From(ForcedLoop(LawOf(1.0 / 3), 0.4), kSamplesPerCycle);
   FitOptions options = OfDisplacement();
-  options.initial_states = {InitialState::kSteady};
+  options.initial_state = InitialState::kSteady;
   options.start["slip_force"] = 0.1 * kSlipForce;
   const FitResult fit = FitOne(WithDisplacementNoise(loop, 0.05, generator), options);
   const ParameterEstimate& slip_force = *fit.Find("slip_force");

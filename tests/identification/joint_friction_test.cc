@@ -65,7 +65,7 @@ TEST(JointFriction, OfASettledJointDistinguishesTheAsymmetryFromTheOffset) {
   Record record = testing::From(RecordOf(drive), 2 * kSamples);
   record.normal_load.clear();
   FitOptions options = Options();
-  options.initial_states = {InitialState::kSteady};
+  options.initial_state = InitialState::kSteady;
   const FitResult fit = FitOne(testing::Shifted(record, 0.0, 1.5), options);
   // What was before the second cycle has left exp(−2·2·3·2) of itself: 4e-11.
   EXPECT_TRUE(testing::Recovers(fit, drive.law, 1e-9));

@@ -83,7 +83,7 @@ TEST(Lag, IsRecoveredOfASteadyLoopThatBeginsAnywhere) {
   const Record whole = LateRecord(law, TimesOf(4.0), 2.6 * kStep);
   for (const std::size_t begin : {260U, 331U, 397U}) {
     const FitResult fit =
-        FitOne(From(whole, begin), {.initial_states = {InitialState::kSteady}, .terms = {"lag"}});
+        FitOne(From(whole, begin), {.initial_state = InitialState::kSteady, .terms = {"lag"}});
     EXPECT_TRUE(Recovers(fit, law, kWithLag)) << begin;
   }
 }

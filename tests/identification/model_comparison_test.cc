@@ -32,7 +32,7 @@ Record Measure(const Loops& loops, std::uint64_t seed) {
 }
 
 std::vector<ModelScore> Compare(const std::vector<Record>& records, FitOptions options = {}) {
-  if (options.initial_states.empty()) options.initial_states = {InitialState::kVirgin};
+  if (!options.initial_state) options.initial_state = InitialState::kVirgin;
   return CompareModels(records, options);
 }
 
@@ -78,7 +78,7 @@ TEST(CompareModels, PredictionIsByFitsThatHaveNotSeenTheCycles) {
   for (const std::size_t begin : {15, 75}) {
     FitOptions rest;
     rest.model = score.model;
-    rest.initial_states = {InitialState::kVirgin};
+    rest.initial_state = InitialState::kVirgin;
     rest.preparation.held_out = {std::vector<bool>(record.size(), false)};
     for (std::size_t i = begin; i < begin + 60; ++i) rest.preparation.held_out[0][i] = true;
     const FitResult fit = FitOne(record, rest);
@@ -96,7 +96,7 @@ TEST(CompareModels, CriterionFollowsItsFormula) {
   const std::vector<ModelScore> scores = Compare({record});
   const ModelScore& reference = ScoreOf(scores, "mindlin", false);
   FitOptions options{.model = std::ranges::min_element(scores, {}, &ModelScore::rms)->model,
-                     .initial_states = {InitialState::kVirgin}};
+                     .initial_state = InitialState::kVirgin};
   if (std::ranges::min_element(scores, {}, &ModelScore::rms)->rig) {
     options.terms = {"rig_stiffness"};
   }

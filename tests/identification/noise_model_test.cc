@@ -136,7 +136,7 @@ Tally TallyOf(const std::vector<double>& coefficients, int loops) {
   const Record clean = testing::LoopOf(kLaw, displacement);
   const double first = coefficients.empty() ? 0.0 : coefficients[0];
   const double unit = std::sqrt(1 - first * first);  // of the process
-  const FitOptions options{.initial_states = {InitialState::kVirgin}};
+  const FitOptions options{.initial_state = InitialState::kVirgin};
   Generator generator(20250301);
   Tally tally;
   for (int loop = 0; loop < loops; ++loop) {

@@ -30,7 +30,7 @@ Deviations Scatter(const Expectation& expected, const Protocol& protocol, int lo
   const Record clean =
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), expected.law, displacement,
                                        {.state = InitialState::kSteady}, expected.rig));
-  FitOptions options{.initial_states = {InitialState::kSteady},
+  FitOptions options{.initial_state = InitialState::kSteady,
                      .preparation = {.displacement_noise = expected.displacement_noise},
                      .force_noise = expected.force_noise};
   if (std::isfinite(expected.rig.stiffness))

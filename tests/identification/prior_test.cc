@@ -18,7 +18,7 @@ Record TimedLoop(double reach = 1.5, double noise = kNoise) {
 }
 
 FitOptions Options() {
-  return {.initial_states = {InitialState::kVirgin},
+  return {.initial_state = InitialState::kVirgin,
           .preparation = {.force_sense = 1, .displacement_noise = 0.0},
           .force_noise = kNoise * kLaw.slip_force};
 }

@@ -130,7 +130,7 @@ TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsKnown) {
   constexpr double kNoise = 0.02 * kReach;
   ExpectHonest(Measure(
       [](const Record& clean, Generator& generator) { return WithNoise(clean, kNoise, generator); },
-      {.initial_states = {InitialState::kVirgin}, .preparation = {.displacement_noise = kNoise}}));
+      {.initial_state = InitialState::kVirgin, .preparation = {.displacement_noise = kNoise}}));
 }
 
 TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsFound) {

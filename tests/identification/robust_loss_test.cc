@@ -36,7 +36,7 @@ Spoilt WithOutliers(Record record, bool one_sided, std::uint64_t seed) {
 }
 
 FitResult FitWith(const Record& record, Loss loss) {
-  return FitOne(record, {.initial_states = {InitialState::kVirgin}, .loss = loss});
+  return FitOne(record, {.initial_state = InitialState::kVirgin, .loss = loss});
 }
 
 constexpr std::array kTruth = {kLaw.tangential_stiffness, kLaw.shape_exponent, kLaw.slip_force};

@@ -29,8 +29,7 @@ class Stages {
         views(records.begin(), records.end()),
         prepared(loop::Prepare(views, options.preparation)),
         data(ScaledRecordsOf(prepared, options)),
-        problem(
-            identification::Candidate(data, options, std::vector(records.size(), state)).problem) {}
+        problem(data, options, state) {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
                   models::InitialState state = models::InitialState::kVirgin)
       : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
@@ -49,7 +48,7 @@ class Stages {
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
     const identification::ScaledRecords thin = identification::Thinned(data);
-    identification::Candidate candidate(data, options, problem.states);
+    identification::Candidate candidate(data, options, problem.initial_state);
     identification::FindStartsOf(candidate, thin, options, solver);
     identification::Descend(candidate, options, solver);
     return candidate.solution;

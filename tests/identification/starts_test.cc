@@ -29,8 +29,7 @@ TEST(Starts, OfARecordToldToBeVirginLeadToTheLeastMinimum) {
     Generator generator(7);
     Record record = WithForceNoise(testing::LoopOf(kMindlin, displacement), 0.05, generator);
     record = Shifted(From(std::move(record), late.lost), reach, 0.0);
-    FitOptions options{.model = &Model(late.model),
-                       .initial_states = {models::InitialState::kVirgin}};
+    FitOptions options{.model = &Model(late.model), .initial_state = models::InitialState::kVirgin};
     const double rms = FitOne(record, options).residuals.rms;
     const auto truth = ParametersOf(kMindlin);
     options.start = {truth.begin(), truth.end()};

@@ -88,7 +88,7 @@ TEST(ModelRecovery, SteadyLoopsOfEveryModelReturnItsParametersFromAnySample) {
         SCOPED_TRACE(::testing::Message() << c.model << ", alpha " << c.shape_exponent << ", reach "
                                           << reach << ", from sample " << begin);
         FitOptions options = OfModel(c.model);
-        options.initial_states = {InitialState::kSteady};
+        options.initial_state = InitialState::kSteady;
         EXPECT_TRUE(Recovers(FitOne(From(steady, begin), options), law, kNoiseFree));
       }
     }

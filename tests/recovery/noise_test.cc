@@ -198,7 +198,7 @@ TEST(Noise, SingularJacobiansEndInVerdictsAndNotInFailures) {
         SCOPED_TRACE(std::string(c.what) + ", " + model);
         const FitResult fit = FitOne(
             c.record,
-            {.model = &Model(model), .initial_states = {state}, .preparation = {.force_sense = 1}});
+            {.model = &Model(model), .initial_state = state, .preparation = {.force_sense = 1}});
         ExpectFinite(fit);
         const bool all_known =
             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {

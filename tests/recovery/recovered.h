@@ -63,7 +63,7 @@ inline identification::FitOptions OfModel(std::string_view model) {
 }
 
 inline identification::FitOptions Virgin() {
-  return {.initial_states = {models::InitialState::kVirgin}};
+  return {.initial_state = models::InitialState::kVirgin};
 }
 
 /// The samples from `begin` on.

@@ -331,8 +331,8 @@ Record NoisyRecord(const Scenario& scenario, double load, const Record& clean, N
 FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
   if (!scenario.finds_state) {
-    options.initial_states = {scenario.is_steady ? models::InitialState::kSteady
-                                                 : models::InitialState::kVirgin};
+    options.initial_state =
+        scenario.is_steady ? models::InitialState::kSteady : models::InitialState::kVirgin;
   }
   options.model = models::FindFrictionModel(scenario.model);
   if (IsForced(scenario) && !scenario.fits_force) {

@@ -86,8 +86,8 @@ MinimumProblem OneRecord(const char* model, const models::BranchLaw& law, double
   const double amplitude = reach * SlipDisplacement(law);
   const double noise = noise_over_peak * law.slip_force * std::min(1.0, reach);
   AddRecord(*problem.options.model, law, amplitude, noise, virgin, draws, problem);
-  problem.options.initial_states = {virgin ? models::InitialState::kVirgin
-                                           : models::InitialState::kSteady};
+  problem.options.initial_state =
+      virgin ? models::InitialState::kVirgin : models::InitialState::kSteady;
   return problem;
 }
 
@@ -163,7 +163,7 @@ MinimumProblem LoadSeries(Draws& draws) {
   problem.law.shape_exponent = std::min(problem.law.shape_exponent, 0.9);
   const double exponent = draws.Uniform(0.0, 1.0);
   problem.others["load_exponent"] = exponent;
-  problem.options.initial_states = {models::InitialState::kVirgin};
+  problem.options.initial_state = models::InitialState::kVirgin;
   const double noise = draws.LogUniform(1e-3, 0.03) * problem.law.slip_force;
   for (const double ratio : {0.5, 1.0, 1.5}) {
     models::BranchLaw law = problem.law;

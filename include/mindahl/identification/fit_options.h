@@ -29,9 +29,9 @@ struct FitOptions {
   /// One of FrictionModels().
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
-  /// Names the state of every record, or one for all. Empty: all records are fitted in both, and
-  /// the smaller AICc on effective samples is kept.
-  std::vector<models::InitialState> initial_states{};
+  /// State of the contacts before the first samples. Empty: both are fitted, and the smaller AICc
+  /// on effective samples is kept.
+  std::optional<models::InitialState> initial_state{};
 
   /// How the records are read, and which samples count.
   loop::PreparationOptions preparation{};

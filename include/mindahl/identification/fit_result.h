@@ -89,7 +89,6 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 /// Holds the fit of one record, and how that was read. In a fit of the displacement the noise of
 /// its readings is that of the fit.
 struct RecordFit : loop::RecordReading {
-  models::InitialState initial_state = models::InitialState::kVirgin;
   /// True if its motion turns between samples, as these show it, and not at the outermost ones.
   bool turns_between = false;
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
@@ -115,7 +114,6 @@ struct FitResult {
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
-  /// Initial state of the records; kVirgin if the options name several.
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc

@@ -199,15 +199,15 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
 bool BeganElsewhere(const Problem& problem, const Solution& solution, const FitResult& result) {
   constexpr double kNearEnd = 0.2;  // [half range]
   constexpr double kFar = 0.5;
-  if (result.model->memory == models::Memory::kNone) return false;  // it starts at any force
+  if (!problem.is_virgin() || result.model->memory == models::Memory::kNone) return false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const auto [lowest, highest] = std::ranges::minmax(problem.data->records[r].excitation());
     const double unloaded = solution.theta[problem.parameters.PositionOfOrigin(r)];
     const double inside = std::min(unloaded - lowest, highest - unloaded);
     const double away = std::abs(problem.data->records[r].excitation().front() - unloaded);
     const double half = (highest - lowest) / 2;
-    if (problem.states[r] == models::InitialState::kVirgin && inside < kNearEnd * half &&
-        away > kFar * half && !loop::HasSlipped(result.records[r].facts)) {
+    if (inside < kNearEnd * half && away > kFar * half &&
+        !loop::HasSlipped(result.records[r].facts)) {
       return true;
     }
   }
@@ -232,8 +232,8 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
     const double unloaded = solution.theta[offset];
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
     const double away = std::abs(record.excitation().front() - unloaded);
-    const bool starts_unloaded = problem.states[r] == models::InitialState::kVirgin &&
-                                 away <= thresholds.starts_unloaded * (highest - lowest) / 2;
+    const bool starts_unloaded =
+        problem.is_virgin() && away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
   }
   // A stroke that was cut has the slope of where it was, not of the contact at rest.
@@ -362,7 +362,7 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
   const Thresholds& thresholds = options.thresholds;
   std::vector<Finding> findings;
   if (result.depth >= Depth::kIntervals) {
-    if (options.initial_states.empty()) {
+    if (!options.initial_state) {
       Append(findings, FindUnknownPast(problem, fitted.solution(), result, thresholds));
     }
     Append(findings, FindFewPlaces(problem, thresholds));

@@ -95,7 +95,7 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
                             double held_readings, Response& response) {
   const ScaledRecords& data = *problem.data;
   const bool is_forced = data.is_forced();
-  const bool tells_asymmetry = AnyIsVirgin(problem.states) &&
+  const bool tells_asymmetry = problem.is_virgin() &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies && !is_forced;
   std::vector<double> contact(problem.size());  // its response
@@ -288,7 +288,7 @@ void ColumnMaker::FollowMotion(DepartureColumn column, std::span<double> motion)
   std::size_t k = 0;
   for (std::size_t r = 0; r < moved_.records.size(); ++r) {
     const std::vector<double>& measured = problem_.data->records[r].displacement;
-    if (problem_.states[r] == models::InitialState::kVirgin) {
+    if (problem_.is_virgin()) {
       double& unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
       Place first = places_[k];
       if (measured[0] != unloaded) first.direction = std::copysign(1.0, measured[0] - unloaded);

@@ -200,9 +200,10 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
-                       std::span<const models::InitialState> states)
+                       models::InitialState initial_state)
     : records_(data.records.size()), origin_(OriginId(data.excitation)) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
+  const bool is_steady = initial_state == models::InitialState::kSteady;
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
   for (std::size_t r = 0; r < records_; ++r) {
     for (const Term& term : terms) {  // the contact's first
@@ -210,9 +211,8 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       const std::size_t count = term.of_column ? options.covariates.size() : 1;
       for (std::size_t c = 0; c < count; ++c) {
         Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-        if (term.id == origin_ && states[r] == models::InitialState::kSteady) {
-          Hold(parameter, parameter.reference);  // the centre of the loop
-        }
+        // The centre of the loop.
+        if (term.id == origin_ && is_steady) Hold(parameter, parameter.reference);
         if (!term.of_column) continue;
         const CovariateColumn& covariate = data.covariates[c];
         parameter.column = c;
@@ -223,14 +223,13 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
-  const bool all_are_steady = !AnyIsVirgin(states);
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
-  ApplyLimits(options, all_are_steady);
+  ApplyLimits(options, is_steady);
   if (is_masing && data.load_varies) KeepShapeBelowOne();
   ApplyGuesses(options, data.prior_noise);
-  if (data.is_forced()) KeepSlipForceAboveLoops(data, states);
+  if (data.is_forced() && is_steady) KeepSlipForceAboveLoops(data);
   RequireTerms(data);
-  if (is_masing && all_are_steady) HoldConfoundedAsymmetry();
+  if (is_masing && is_steady) HoldConfoundedAsymmetry();
   Sort();
 }
 
@@ -282,13 +281,12 @@ void Parameters::KeepShapeBelowOne() {
 
 /// Bounds Tc, and begins with it, where the force is imposed: below the largest force of a steady
 /// loop it has no loop.
-void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data,
-                                         std::span<const models::InitialState> states) {
+void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data) {
   constexpr double kShortOfSlip = 1e-9;
   Parameter& slip_force = parameters_[kSlipForce];
-  for (std::size_t r = 0; r < records_; ++r) {
-    if (slip_force.fixed || states[r] != models::InitialState::kSteady) continue;
-    const auto [low, high] = std::ranges::minmax(data.records[r].excitation());
+  if (slip_force.fixed) return;
+  for (const ScaledRecord& record : data.records) {
+    const auto [low, high] = std::ranges::minmax(record.excitation());
     const double least = std::log((high - low) / 2) + kShortOfSlip;
     if (!(least > slip_force.lower)) continue;
     slip_force.lower = std::min(least, slip_force.upper);
@@ -365,7 +363,7 @@ Parameter& Parameters::Find(std::string_view name, std::string_view what) {
   throw InvalidArgument(fmt::format("{} {}", what, UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
+void Parameters::ApplyLimits(const FitOptions& options, bool is_steady) {
   for (const auto& [name, interval] : options.bounds) {
     Parameter& parameter = Find(name, "parameter with bounds");
     const auto& [from, to] = interval;
@@ -389,7 +387,7 @@ void Parameters::ApplyLimits(const FitOptions& options, bool all_are_steady) {
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->id == origin_ && all_are_steady) {
+    if (parameter.term->id == origin_ && is_steady) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",

@@ -16,11 +16,6 @@
 
 namespace mindahl::identification {
 
-/// True if a record starts from an unloaded contact.
-inline bool AnyIsVirgin(std::span<const models::InitialState> states) {
-  return std::ranges::find(states, models::InitialState::kVirgin) != states.end();
-}
-
 /// True if a fit has a term that is on demand, fitted or at a given value.
 bool HasTerm(const FitOptions& options, std::string_view name);
 bool HasTerm(const FitOptions& options, TermId id);
@@ -88,10 +83,9 @@ constexpr TermId OriginId(loop::Channel excitation) {
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
  public:
-  /// @param states  of every record
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
   Parameters(const ScaledRecords& data, const FitOptions& options,
-             std::span<const models::InitialState> states);
+             models::InitialState initial_state);
 
   [[nodiscard]] std::size_t size() const { return parameters_.size(); }
   [[nodiscard]] const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
@@ -137,13 +131,12 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyLimits(const FitOptions& options, bool all_are_steady);
+  void ApplyLimits(const FitOptions& options, bool is_steady);
   void ApplyGuesses(const FitOptions& options, double prior_noise);
   void RequireTerms(const ScaledRecords& data) const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne();
-  void KeepSlipForceAboveLoops(const ScaledRecords& data,
-                               std::span<const models::InitialState> states);
+  void KeepSlipForceAboveLoops(const ScaledRecords& data);
   void Sort();
   /// @param what  it is, in a message
   [[nodiscard]] Parameter& Find(std::string_view name, std::string_view what);

@@ -90,7 +90,7 @@ void Response::Bind(const Problem& problem) {
     turns_[r] = TurnsOf(is_late && record.whole != nullptr ? *record.whole : record);
     if (record.load_ratio.empty() || !IsMasing(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
-                              problem.states[r], histories_[r]);
+                              problem.initial_state, histories_[r]);
   }
   slip_varies_ =
       std::ranges::any_of(std::array{TermId::kSlipSlope, TermId::kSlipCurvature, TermId::kSlipSpeed,
@@ -101,11 +101,9 @@ void Response::Bind(const Problem& problem) {
 const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
   const ScaledRecord& record = problem_->data->records[r];
   const Parameters& parameters = problem_->parameters;
-  const models::InitialState state = problem_->states[r];
-  const bool is_virgin = state == models::InitialState::kVirgin;
   const models::InitialContact initial = {
-      .state = state,
-      .unloaded_displacement = is_virgin ? theta[parameters.PositionOfOrigin(r)] : 0.0,
+      .state = problem_->initial_state,
+      .unloaded_displacement = problem_->is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
       .asymmetry = IsMasing(*problem_) ? parameters.AsymmetryAt(theta) : 0.0};
   ContactMotion kind = ContactMotion::kMeasured;
   double amount = 0.0;

@@ -19,12 +19,19 @@ namespace mindahl::identification {
 /// Holds what is to be solved: records, a model, their initial state and the parameters. Nothing of
 /// it changes during the solution.
 struct Problem {
-  const ScaledRecords* data;
-  const models::FrictionModel* model;
-  std::vector<models::InitialState> states;  // of the records
-  Parameters parameters;
+  Problem(const ScaledRecords& records, const FitOptions& options, models::InitialState initial)
+      : data(&records),
+        model(options.model),
+        initial_state(initial),
+        parameters(records, options, initial) {}
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }
+  [[nodiscard]] bool is_virgin() const { return initial_state == models::InitialState::kVirgin; }
+
+  const ScaledRecords* data;
+  const models::FrictionModel* model;
+  models::InitialState initial_state;
+  Parameters parameters;
 };
 
 /// Returns the log of the factor of t: ln Tc, or ln(Tc/σ) of a displacement.

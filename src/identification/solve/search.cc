@@ -227,7 +227,8 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   const Parameter& shape = problem.parameters[kShape];
   const bool has_kinks = shape.fixed && shape.theta == 0;
   const ScaledRecords& data = RecordsOfLooks(problem, has_kinks, thinned);
-  const Problem thin{&data, problem.model, problem.states, problem.parameters};
+  Problem thin = problem;
+  thin.data = &data;
   solver.Bind(thin);
   Plane plane(thin, solver);
   std::vector<Look> looks = plane.Best();

@@ -16,8 +16,8 @@ struct StartingPoint {
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
   Candidate(const ScaledRecords& data, const FitOptions& options,
-            const std::vector<models::InitialState>& states)
-      : problem{&data, options.model, states, Parameters(data, options, states)} {}
+            models::InitialState initial_state)
+      : problem(data, options, initial_state) {}
 
   Problem problem;
   std::vector<StartingPoint> starts = {};

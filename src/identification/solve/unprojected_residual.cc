@@ -41,10 +41,8 @@ std::vector<std::size_t> UnprojectedResidual::BlocksOf(const Problem& problem) {
   const Parameters& parameters = problem.parameters;
   std::vector<std::size_t> blocks;
   for (const std::size_t p : parameters.reported()) {
-    const std::size_t record = parameters[p].record;
-    const bool is_steady_origin = p == parameters.PositionOfOrigin(record) &&
-                                  problem.states[record] == models::InitialState::kSteady;
-    if (!is_steady_origin) blocks.push_back(p);
+    const bool is_origin = p == parameters.PositionOfOrigin(parameters[p].record);
+    if (problem.is_virgin() || !is_origin) blocks.push_back(p);
   }
   return blocks;
 }
