@@ -338,19 +338,23 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
 ScaledRecords Thinned(const ScaledRecords& data) {
   // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
   constexpr double kKeptOfAStroke = 8.0;
-  // Strokes that are thinned so: more are thinned to their ends and one sample in between.
-  constexpr std::size_t kDenseStrokes = 16;
+  // Cycles that are thinned so, spread over the record: others to their ends and one sample
+  // between.
+  constexpr std::size_t kDenseCycles = 8;
   ScaledRecords thinned = data;
   thinned.counted = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
-    // Under a load that varies the path between samples is part of the history.
-    const bool is_dense = strokes.size() <= kDenseStrokes || !record.load_ratio.empty();
-    const double kept = is_dense ? kKeptOfAStroke : 2.0;
+    const std::size_t cycles = (strokes.size() + 1) / 2;
     std::vector<std::size_t> samples = {0};
     std::vector<std::size_t> turns;
-    for (const auto& [begin, end, direction] : strokes) {
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+      const auto& [begin, end, direction] = strokes[s];
+      // Under a load that varies the path between samples is part of the history.
+      const bool is_dense =
+          s / 2 * kDenseCycles % cycles < kDenseCycles || !record.load_ratio.empty();
+      const double kept = is_dense ? kKeptOfAStroke : 2.0;
       const double way = record.displacement[end] - record.displacement[begin];
       double next = 1.0;
       for (std::size_t i = begin + 1; way != 0 && i < end && next < kept; ++i) {
