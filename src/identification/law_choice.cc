@@ -8,7 +8,6 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
-#include "mindahl/identification/fit.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -153,10 +152,26 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
-  // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
-  // need turns that are not recorded. That does not decide for it, unless the loop is short of
-  // slip, where no such turns give Masing's contact the loop of Dahl's, and Dahl's leaves but
-  // noise.
+  // Of a contact under cycles of one amplitude the laws differ in what changes with time. Where the
+  // residuals look like such a change the other law is to be better beside that, too.
+  const auto drift = std::ranges::find_if(fit.adequacy.causes, [](const Cause& cause) {
+    return cause.term == "force_drift" || cause.term == "slip_trend";
+  });
+  if (drift != fit.adequacy.causes.end() && !is_undecided() && delta < 0) {
+    FitOptions with = options;
+    FitOptions other_with = others;
+    StartFrom(fit, with);
+    with.terms.emplace_back(drift->term);
+    other_with.terms.emplace_back(drift->term);
+    const auto fit_with = FitWithout({}, records, std::move(with));
+    const auto other_fit_with = FitWithout({}, records, std::move(other_with));
+    if (fit_with && other_fit_with) {
+      delta = std::max(delta, criterion(*other_fit_with) - criterion(*fit_with));
+    }
+  }
+  // Dahl's own law can start from any force, Masing's only from reversals that may not be recorded:
+  // the first branch of an excerpt is no evidence for Dahl's, unless the loop is short of slip,
+  // where no such reversals give Masing's contact the loop of Dahl's, and Dahl's leaves but noise.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
