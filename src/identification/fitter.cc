@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,7 +16,6 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
@@ -199,11 +199,9 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
 /// likelihood is a valley with several minima.
 bool TellsTheLaw(const FitResult& result) {
   if (result.depth < Depth::kErrors) return true;
-  return std::ranges::all_of(result.parameters, [](const ParameterEstimate& estimate) {
-    const bool is_of_law =
-        estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
-    return !is_of_law || estimate.is_known();
-  });
+  constexpr std::size_t kOfLaw = 3;  // σ, α and Tc are the first
+  return std::ranges::all_of(result.parameters | std::views::take(kOfLaw),
+                             &ParameterEstimate::is_known);
 }
 
 /// Returns the noise that priors weigh against [N or m]: that of a fit without them.
@@ -270,7 +268,15 @@ struct Fitter::State {
   void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
     Fit(records, depth, given);
     const std::optional<FitOptions> within = WithinMeasuredForce(result, given);
-    if (within) Fit(records, depth, *within);
+    if (within) {
+      Fit(records, depth, *within);
+      // The largest force is known no better than the law follows it.
+      if (IsFitted(result) && result.parameters[kSlipForce].upper95) {
+        ParameterEstimate& slip_force = result.parameters[kSlipForce];
+        Include(slip_force,
+                {.lower = slip_force.value, .upper = slip_force.value + result.adequacy.misfit});
+      }
+    }
     CutAtBounds(given, result);
   }
   void Continue(const RecordView& record, Depth depth);
