@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "core/refuse.h"
@@ -30,7 +30,6 @@ struct CeresProblem::State {
   std::optional<Problem> problem;
   double residual_unit = 1.0;  // [units of the data]
   std::vector<CeresParameter> parameters;
-  std::vector<std::size_t> blocks;  // among the parameters
 };
 
 CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& given,
@@ -39,7 +38,7 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   RequirePositive("residual unit", residual_unit);
   FitOptions options = given;
   options.preparation.force_sense = fit.force_sense;
-  auto& [prepared, data, problem, unit, values, blocks] = *state_;
+  auto& [prepared, data, problem, unit, values] = *state_;
   prepared = loop::Prepare(records, options.preparation);
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
@@ -49,11 +48,9 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   }
   problem.emplace(data, options, fit.initial_state);
   unit = residual_unit / data.response_unit();
-  const std::vector<std::size_t> of_residual = UnprojectedResidual::BlocksOf(*problem);
   const Parameters& parameters = problem->parameters;
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    if (std::ranges::count(of_residual, p) > 0) blocks.push_back(values.size());
     CeresParameter& value = values.emplace_back(
         CeresParameter{.name = parameters.NameOf(p),
                        .unit = parameters.UnitOf(p, !data.records.front().velocity.empty()),
@@ -79,23 +76,19 @@ std::span<CeresParameter> CeresProblem::parameters() { return state_->parameters
 CeresParameter& CeresProblem::Find(std::string_view name) {
   const auto found = std::ranges::find(state_->parameters, name, &CeresParameter::name);
   if (found != state_->parameters.end()) return *found;
-  std::vector<std::string> names;
-  for (const CeresParameter& parameter : state_->parameters) names.push_back(parameter.name);
-  throw InvalidArgument("parameter " + UnknownAmong(name, names));
-}
-
-std::span<const std::size_t> CeresProblem::blocks() const { return state_->blocks; }
-
-std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction(
-    std::unique_ptr<ceres::LossFunction> loss) const {
-  return std::make_unique<UnprojectedResidual>(*state_->problem, state_->residual_unit,
-                                               std::move(loss));
+  throw InvalidArgument(
+      "parameter " +
+      UnknownAmong(name, state_->parameters | std::views::transform(&CeresParameter::name)));
 }
 
 void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
-  std::vector<double*> theta;
-  for (const std::size_t place : blocks()) theta.push_back(&state_->parameters[place].theta);
-  problem.AddResidualBlock(MakeCostFunction(std::move(loss)).release(), nullptr, theta);
+  const Problem& of_fit = *state_->problem;
+  std::vector<double*> blocks;
+  for (const std::size_t p : UnprojectedResidual::BlocksOf(of_fit)) {
+    blocks.push_back(&Find(of_fit.parameters.NameOf(p)).theta);
+  }
+  problem.AddResidualBlock(new UnprojectedResidual(of_fit, state_->residual_unit, std::move(loss)),
+                           nullptr, blocks);
   for (CeresParameter& parameter : state_->parameters) {
     BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }

@@ -14,7 +14,6 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solved_fit.h"
@@ -62,13 +61,13 @@ void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptio
   const Thresholds& thresholds = options.thresholds;
   if (LeavesOnlyRounding(problem, solution)) {
     result.adequacy.tried = 1;
-    result.adequacy = GradeUse(thresholds, result);
+    GradeUse(thresholds, result);
     return;
   }
   AdequacyTest test = TestAdequacy(fitted, thresholds, solver.response);
   const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
-  result.adequacy = GradeUse(thresholds, result);
+  GradeUse(thresholds, result);
   if (!MayOmitTerms(result.adequacy, thresholds)) return;
   WidenByOmittedTerms(problem, solution, test, causes,
                       StudentQuantile(test.degrees_of_freedom, options.confidence),
@@ -118,9 +117,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem.parameters, result);
   Append(result.findings, FindOnParameters(fitted, attempt.prepared, options, result));
-  if (const std::optional<Finding> inadequate = FindInadequate(result, thresholds)) {
-    result = WithoutInadequate(std::move(result), *inadequate);
-  }
+  WithdrawIfInadequate(thresholds, result);
   Append(result.findings, FindWideIntervals(result, thresholds));
   Judge(result.parameters, result.findings);
   return result;

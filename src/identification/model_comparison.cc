@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "identification/continued_fit.h"
 #include "identification/inference/noise.h"
@@ -16,8 +16,6 @@ using loop::RecordView;
 namespace {
 
 constexpr std::size_t kFolds = 5;
-
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Returns the closed cycles, from one reversal to the next but one, of which samples count. A
 /// single one of a record is none: without it nothing of the kind would be left to fit.
@@ -72,9 +70,11 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
   const auto alpha = options.fixed.find("alpha");
-  std::vector<ModelScore> scores;
-  std::vector<FitOptions> asked;
-  std::vector<FitResult> fits;
+  struct Compared {
+    FitOptions options;
+    FitResult fit;
+  };
+  std::vector<Compared> compared;
   for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
@@ -88,41 +88,36 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
       FitOptions own = options;
       own.model = &model;
       if (rig) own.terms.emplace_back("rig_stiffness");
-      const FitResult& fit = fits.emplace_back(Fitter(own).Fit(records, Depth::kIntervals));
-      scores.push_back({.model = &model,
-                        .rig = rig,
-                        .converged = fit.converged,
-                        .free_parameters = fit.CountFreeParameters(),
-                        .rms = IsFitted(fit) ? fit.rms : kNone,
-                        .aicc = kNone});
-      asked.push_back(std::move(own));
+      FitResult fit = Fitter(own).Fit(records, Depth::kIntervals);
+      if (fit.converged) compared.push_back({std::move(own), std::move(fit)});
     }
   }
-  const FitResult& best = *std::ranges::min_element(
-      fits, {}, [](const FitResult& fit) { return IsFitted(fit) ? fit.likelihood_rms : kNone; });
-  if (!IsFitted(best)) return scores;
+  if (compared.empty()) return {};
+  const FitResult& best = std::ranges::min_element(compared, {}, [](const Compared& one) {
+                            return one.fit.likelihood_rms;
+                          })->fit;
   const auto samples = static_cast<double>(best.residuals.samples);
   const Evidence evidence(best.residuals.samples,
                           std::min(best.residuals.effective_samples, samples));
   const std::vector<SampleRange> cycles = CyclesOf(best);
-  double least = kNone;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!IsFitted(fits[i])) continue;
+  std::vector<ModelScore> scores;
+  for (auto& [own, fit] : compared) {
     // Over the largest force: the criterion's floor is the rounding of forces of about one.
-    const double rms = fits[i].likelihood_rms / best.PeakForce();
-    scores[i].aicc = evidence.Aicc(samples * rms * rms, scores[i].free_parameters);
-    if (!scores[i].converged) continue;
-    least = std::min(least, scores[i].aicc);
+    const double rms = fit.likelihood_rms / best.PeakForce();
+    ModelScore& score = scores.emplace_back(ModelScore{
+        .model = own.model,
+        .rig = HasTerm(own, TermId::kRigStiffness) && !HasTerm(options, TermId::kRigStiffness),
+        .free_parameters = fit.CountFreeParameters(),
+        .rms = fit.rms,
+        .delta_aicc = evidence.Aicc(samples * rms * rms, fit.CountFreeParameters())});
     if (cycles.empty()) continue;
-    FitOptions& from_here = asked[i];
-    from_here.initial_state = fits[i].initial_state;
-    StartFrom(fits[i], from_here);
-    from_here.preparation.force_sense = fits[i].force_sense;
-    scores[i].held_out_rms = PredictCycles(records, from_here, best, cycles);
+    own.initial_state = fit.initial_state;
+    own.preparation.force_sense = fit.force_sense;
+    StartFrom(fit, own);
+    score.held_out_rms = PredictCycles(records, own, best, cycles);
   }
-  for (ModelScore& score : scores) {
-    score.delta_aicc = std::isfinite(least) ? score.aicc - least : score.aicc;
-  }
+  const double least = std::ranges::min(scores, {}, &ModelScore::delta_aicc).delta_aicc;
+  for (ModelScore& score : scores) score.delta_aicc -= least;
   return scores;
 }
 

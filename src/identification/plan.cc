@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "core/refuse.h"
@@ -14,7 +15,6 @@
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
 #include "mindahl/core/error.h"
-#include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
@@ -79,17 +79,13 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   Solution& solution = candidate.solution;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;
-  FindStartsOf(candidate, data, options, solver);
-  const std::vector<double> theta = candidate.starts.front().theta;
+  std::vector<double> theta;
+  for (const Parameter& parameter : problem.parameters) theta.push_back(parameter.theta);
   solution.theta = theta;
   Noise noise;
   FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
   solution.theta = theta;
-  solution.converged = true;
-  solution.side.assign(theta.size(), BoundSide::kInside);
-  for (const std::size_t p : problem.parameters.free()) {
-    solution.side[p] = SideOf(problem.parameters[p], theta[p]);
-  }
+  solution.side = SidesAt(problem.parameters, theta);
   const Estimates estimates(
       problem, solution, noise, options,
       LinearizeAt(problem, theta, solver.response, problem.parameters.free()));
@@ -111,10 +107,9 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
     RequirePositive(fmt::format("wanted precision of {}", name), precision.value);
     const ParameterEstimate* estimate = fit.Find(name);
     if (estimate == nullptr) {
-      std::vector<std::string> names;
-      names.reserve(fit.parameters.size());
-      for (const ParameterEstimate& known : fit.parameters) names.push_back(known.name);
-      throw InvalidArgument("parameter " + UnknownAmong(name, names));
+      throw InvalidArgument(
+          "parameter " +
+          UnknownAmong(name, fit.parameters | std::views::transform(&ParameterEstimate::name)));
     }
     if (estimate->status == ParameterStatus::kFixed) continue;
     if (!estimate->standard_error) return std::numeric_limits<double>::infinity();

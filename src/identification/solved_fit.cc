@@ -57,8 +57,8 @@ std::vector<InitialState> StatesToTry(const Attempt& attempt) {
   return states;
 }
 
-/// True if the search of where a contact was unloaded stopped at a limit of its own: what is told
-/// is the cycles before the record.
+/// True if the search of where a contact was unloaded stopped at a limit of its own: it was rather
+/// cycled before the record.
 bool IsUnloadedAtLimit(const Candidate& candidate) {
   if (!std::isfinite(candidate.solution.sum_of_squares)) return false;  // none was made
   const Parameters& parameters = candidate.problem.parameters;
@@ -69,7 +69,6 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
   return false;
 }
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   // A fit that is given a start looks for others on all samples, where it does.
@@ -113,9 +112,9 @@ SolvedFit FitBestState(const Attempt& attempt) {
                          candidate.problem.parameters.free().size());
   };
   const double gain = criterion(steady) - criterion(virgin);
-  // A cycled contact that fits hardly worse is told, one that was unloaded at a limit is not.
-  const bool is_told = steady.solution.converged && IsUnloadedAtLimit(virgin);
-  const bool is_virgin = gain > (is_told ? options.thresholds.undecided : 0.0);
+  // Where the virgin contact is unloaded at a limit of the search it must fit clearly better.
+  const bool is_doubtful = steady.solution.converged && IsUnloadedAtLimit(virgin);
+  const bool is_virgin = gain > (is_doubtful ? options.thresholds.undecided : 0.0);
   Candidate& best = is_virgin ? virgin : steady;
   const Candidate& other = is_virgin ? steady : virgin;
   std::optional<models::BranchLaw> law;

@@ -39,80 +39,12 @@ std::vector<double> ThetaOf(const Problem& problem, const FitResult& fit) {
   return theta;
 }
 
-/// Scores the choices of one fit.
-class Scorer {
- public:
-  Scorer(std::span<const loop::RecordView> records, const FitResult& fit, const FitOptions& options,
-         std::span<const TermChoice> choices);
-
-  std::optional<TermScore> Score(const TermChoice& choice);
-
- private:
-  [[nodiscard]] Problem ProblemOf(FitOptions options) const;
-  [[nodiscard]] bool WasFree(const Problem& problem, std::size_t p) const;
-  [[nodiscard]] TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> added,
-                                       const Eigen::MatrixXd& columns) const;
-
-  const FitResult& fit_;
-  const FitOptions& options_;
-  std::vector<std::string> covariates_;  // of all choices
-  ScaledRecords data_;
-  Response response_;
-  std::vector<std::size_t> inside_;  // its parameters that are not at a bound
-  Linearization at_;                 // by these
-  double effective_samples_ = 1.0;
-};
-
-Scorer::Scorer(std::span<const loop::RecordView> records, const FitResult& fit,
-               const FitOptions& options, std::span<const TermChoice> choices)
-    : fit_(fit), options_(options) {
-  FitOptions with_all = options;
-  for (const TermChoice& choice : choices) with_all = choice.AddedTo(std::move(with_all));
-  covariates_ = with_all.covariates;
-  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  LeaveOutBeyondLags(options, prepared);
-  data_ = Scale(prepared, options);
-  AddColumns(with_all, prepared, data_);
-  for (std::size_t r = 0; r < data_.records.size(); ++r) {
-    data_.records[r].turns_between = fit.records[r].turns_between;
-  }
-  const Problem problem = ProblemOf(options);
-  const std::vector<double> theta = ThetaOf(problem, fit);
-  for (const std::size_t p : problem.parameters.free()) {
-    const bool is_inside = SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside;
-    if (is_inside && WasFree(problem, p)) inside_.push_back(p);
-  }
-  at_ = LinearizeAt(problem, theta, response_, inside_);
-  effective_samples_ = EffectiveSamples(problem, theta, response_);
-}
-
-Problem Scorer::ProblemOf(FitOptions options) const {
-  options.covariates = covariates_;
-  options.start.clear();
-  return Problem(data_, options, fit_.initial_state);
-}
-
-bool Scorer::WasFree(const Problem& problem, std::size_t p) const {
-  const ParameterEstimate* const fitted = fit_.Find(problem.parameters.NameOf(p));
-  return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
-}
-
-std::optional<TermScore> Scorer::Score(const TermChoice& choice) {
-  const Problem problem = ProblemOf(choice.AddedTo(options_));
-  std::vector<std::size_t> added;
-  for (const std::size_t p : problem.parameters.free()) {
-    const Parameter& parameter = problem.parameters[p];
-    const bool is_other = parameter.term->of_column && parameter.column_name != choice.covariate;
-    if (!is_other && !WasFree(problem, p)) added.push_back(p);
-  }
-  if (added.empty()) return std::nullopt;
-  const Linearization at = LinearizeAt(problem, ThetaOf(problem, fit_), response_, added);
-  return ScoreColumns(problem, added, at.jacobian);
-}
-
-TermScore Scorer::ScoreColumns(const Problem& problem, std::span<const std::size_t> added,
-                               const Eigen::MatrixXd& columns) const {
-  const Gram gram(at_.jacobian, columns, at_.residual, kOwnShare);
+/// Scores the columns of some parameters that are added to a fit.
+/// @param inside  parameters of the fit that are not at a bound, with the columns of `at`
+TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> inside,
+                       const Linearization& at, const Evidence& evidence,
+                       std::span<const std::size_t> added, const Eigen::MatrixXd& columns) {
+  const Gram gram(at.jacobian, columns, at.residual, kOwnShare);
   const GramAxes axes = gram.AxesOfAll();
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
@@ -121,18 +53,19 @@ TermScore Scorer::ScoreColumns(const Problem& problem, std::span<const std::size
     const Term& term = *problem.parameters[added[c]].term;
     score.is_negative = score.is_negative || (is_lower && term.is_never_negative);
   }
-  for (std::size_t j = 0; j < inside_.size() && inside_[j] <= kSlipForce; ++j) {
-    score.law[inside_[j]] = step.law[static_cast<Eigen::Index>(j)];
+  for (std::size_t j = 0; j < inside.size() && inside[j] <= kSlipForce; ++j) {
+    score.law[inside[j]] = step.law[static_cast<Eigen::Index>(j)];
   }
-  const auto samples = static_cast<double>(data_.counted);
+  const auto samples = static_cast<double>(problem.data->counted);
   const double rounding = samples * kRoundingRms * kRoundingRms;
   const double without = gram.sum_of_squares() + rounding;
   const double with = std::max(without - axes.coefficients.square().sum(), rounding);
-  score.rms = data_.force * std::sqrt(with / samples);
+  score.rms = problem.data->force * std::sqrt(with / samples);
   score.gain = 1 - std::sqrt(with / without);
-  const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
-  const auto columns_of_its_own = static_cast<double>(axes.values.size());
-  if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, columns_of_its_own);
+  const double ratio = evidence.LikelihoodRatio(without, with);
+  if (ratio > 0) {
+    score.p_value = PValueOfChiSquared(ratio, static_cast<double>(axes.values.size()));
+  }
   return score;
 }
 
@@ -149,13 +82,51 @@ FitOptions TermChoice::AddedTo(FitOptions options) const {
 std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordView> records,
                                                  const FitResult& fit, const FitOptions& options,
                                                  std::span<const TermChoice> choices) {
-  Scorer scorer(records, fit, options, choices);
+  FitOptions with_all = options;
+  for (const TermChoice& choice : choices) with_all = choice.AddedTo(std::move(with_all));
+  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
+  LeaveOutBeyondLags(options, prepared);
+  ScaledRecords data = Scale(prepared, options);
+  AddColumns(with_all, prepared, data);
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    data.records[r].turns_between = fit.records[r].turns_between;
+  }
+  const auto problem_of = [&](FitOptions with) {
+    with.covariates = with_all.covariates;
+    with.start.clear();
+    return Problem(data, with, fit.initial_state);
+  };
+  const auto was_free = [&](const Problem& problem, std::size_t p) {
+    const ParameterEstimate* const fitted = fit.Find(problem.parameters.NameOf(p));
+    return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
+  };
+  Response response;
+  const Problem fitted = problem_of(options);
+  const std::vector<double> theta = ThetaOf(fitted, fit);
+  std::vector<std::size_t> inside;
+  for (const std::size_t p : fitted.parameters.free()) {
+    const bool is_inside = SideOf(fitted.parameters[p], theta[p]) == BoundSide::kInside;
+    if (is_inside && was_free(fitted, p)) inside.push_back(p);
+  }
+  const Linearization at = LinearizeAt(fitted, theta, response, inside);
+  const Evidence evidence(data.counted, EffectiveSamples(fitted, theta, response));
   std::vector<std::optional<TermScore>> scores;
   for (const TermChoice& choice : choices) {
+    std::optional<TermScore>& score = scores.emplace_back();
     try {
-      scores.push_back(scorer.Score(choice));
+      const Problem problem = problem_of(choice.AddedTo(options));
+      std::vector<std::size_t> added;
+      for (const std::size_t p : problem.parameters.free()) {
+        const Parameter& parameter = problem.parameters[p];
+        const bool is_other =
+            parameter.term->of_column && parameter.column_name != choice.covariate;
+        if (!is_other && !was_free(problem, p)) added.push_back(p);
+      }
+      if (added.empty()) continue;
+      const Linearization with = LinearizeAt(problem, ThetaOf(problem, fit), response, added);
+      score = ScoreColumns(problem, inside, at, evidence, added, with.jacobian);
     } catch (const InvalidArgument&) {
-      scores.emplace_back();  // no lag where time does not go on
+      continue;  // no lag where time does not go on
     }
   }
   return scores;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/identification/fit.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::identification {

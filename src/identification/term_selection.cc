@@ -16,7 +16,6 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
-#include "identification/solved_fit.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
@@ -146,7 +145,7 @@ struct Alternative {
 /// slides has carried.
 void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
                          FitResult& fit) {
-  const RecordFit& widest = fit.WidestRecord();
+  const std::optional<double> half_gap = fit.MeasuredHalfGap();
   for (const Alternative& alternative : alternatives) {
     for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
       ParameterEstimate& estimate = fit.parameters[p];
@@ -154,10 +153,9 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
       const double step = std::clamp(alternative.law[p], -kFarthestStep, kFarthestStep);
       double value =
           p == kShape ? std::max(0.0, estimate.value + step) : estimate.value * std::exp(step);
-      if (p == kSlipForce && loop::Slides(widest.facts)) {
-        value =
-            std::clamp(value, std::min(*widest.facts.half_gap / widest.load_ratio, estimate.value),
-                       std::max(widest.facts.peak_force / widest.load_ratio, estimate.value));
+      if (p == kSlipForce && half_gap && loop::Slides(fit.WidestRecord().facts)) {
+        value = std::clamp(value, std::min(*half_gap, estimate.value),
+                           std::max(fit.PeakForce(), estimate.value));
       }
       Include(estimate, {.lower = value, .upper = value});
     }
@@ -253,8 +251,7 @@ std::vector<TermCandidate*> Selection::Score() {
 
 /// True if a candidate that gains is not to be added, and says why where that is to be reported.
 bool Selection::IsRefused(TermCandidate& candidate) const {
-  // Beside a slip force of the speed a further force of speed and the slip force at rest are
-  // confounded; a drag is that force with the slip force that at v₀.
+  // Without a slip force of the speed, a drag and the slip force at rest are confounded.
   if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
   // Short of slip a slip force of the position and its spring take the law's place.
   if (candidate.name.starts_with("slip_position") && !Slides()) {

@@ -276,7 +276,6 @@ std::string ToJson(const Report& report) { return Dump(DocumentOf(report)); }
 
 Json ComparedModels(const Report& report) {
   std::vector<identification::ModelScore> scores = report.compared;
-  std::erase_if(scores, [](const auto& score) { return !score.converged; });
   std::ranges::sort(scores, {}, &identification::ModelScore::delta_aicc);
   return ListOf(scores, [](const auto& score) -> Json {
     return {{"model", score.model->name},

@@ -205,7 +205,7 @@ TEST(Grade, UseFollowsTheMisfitOverTheHalfGap) {
                                     Case{1.19, Use::kIndicative}, Case{1.21, Use::kNone}}) {
     FitResult fit = SlidingFit();
     SetResiduals(std::vector<double>(5, missed), fit);
-    fit.adequacy = GradeUse(Thresholds(), fit);
+    GradeUse(Thresholds(), fit);
     EXPECT_EQ(fit.adequacy.use, use) << missed;
     EXPECT_NEAR(fit.adequacy.misfit, missed, kRounding);
     ASSERT_TRUE(fit.adequacy.misfit_over_half_gap);
@@ -217,7 +217,7 @@ TEST(Grade, WithoutAGapUseIsJudgedByTheLargestForce) {
   FitResult fit = SlidingFit();
   fit.records[0].facts.half_gap = -0.3;
   SetResiduals(std::vector<double>(5, 0.49), fit);
-  fit.adequacy = GradeUse(Thresholds(), fit);
+  GradeUse(Thresholds(), fit);
   EXPECT_FALSE(fit.adequacy.misfit_over_half_gap);
   EXPECT_EQ(fit.adequacy.use, Use::kQuantitative);
 }
@@ -226,7 +226,7 @@ TEST(Grade, LoopThatIsNotSeenIsOfNoUse) {
   FitResult fit = SlidingFit();
   SetResiduals(std::vector<double>(5, 0.1), fit);
   fit.residuals.r_squared = 0.05;
-  fit.adequacy = GradeUse(Thresholds(), fit);
+  GradeUse(Thresholds(), fit);
   EXPECT_EQ(fit.adequacy.use, Use::kNone);
 }
 

@@ -38,7 +38,7 @@ TEST(Gram, StepsAsLeastSquaresOfAllColumnsDo) {
   omitted.col(3) = omitted.col(0) + omitted.col(1);  // tells nothing more
   const Eigen::VectorXd residual = Drawn(kRows, 1, generator);
   Gram gram(law, omitted, residual, Thresholds().own_part);
-  const std::array<Eigen::Index, 4> all = {0, 1, 2, 3};
+  const std::vector<Eigen::Index> all = {0, 1, 2, 3};
   const GramAxes axes = gram.AxesOf(all);
   ASSERT_EQ(axes.values.size(), 3);
   const GramStep step = gram.StepBy(axes, axes.values.inverse());

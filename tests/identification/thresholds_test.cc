@@ -32,7 +32,8 @@ FitResult Made() { return testing::MadeFit(/*peak_force=*/20.0); }
 Use UseAt(const Thresholds& thresholds, double misfit) {
   FitResult result = Made();
   result.adequacy.misfit = misfit * result.PeakForce();
-  return GradeUse(thresholds, result).use;
+  GradeUse(thresholds, result);
+  return result.adequacy.use;
 }
 
 bool IsWide(const Thresholds& thresholds, std::size_t parameter, double lower, double upper) {

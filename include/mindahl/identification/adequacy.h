@@ -25,8 +25,8 @@ struct ResidualStructure {
   /// Fraction of the residuals' variance that repeats: 0 for noise, 1 for what the model cannot
   /// follow. 0 where an F test finds nothing, or a direction has one stroke only.
   double repeatable_share = 0.0;
-  /// Variance of the residuals in these strokes that does not repeat over that of all residuals: a
-  /// model may fail beside them.
+  /// Variance within these strokes that does not repeat from one to the next, over the variance of
+  /// all residuals: above 1 − `repeatable_share` where these strokes fit worse than the rest.
   double noise_share = 1.0;
   /// Number of strokes of growing and of falling displacement that are long enough.
   std::array<std::size_t, 2> strokes{};

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
-#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -70,18 +68,11 @@ class [[gnu::visibility("default")]] CeresProblem {
   /// @throws InvalidArgument where there is none of that name
   [[nodiscard]] CeresParameter& Find(std::string_view name);
 
-  /// Returns the positions in parameters() of the blocks of the cost function, in order.
-  [[nodiscard]] std::span<const std::size_t> blocks() const;
-  /// Returns the residuals of all samples, one record after the other; those that do not count are
-  /// 0. It refers to this problem.
-  /// @param loss  of each sample, in residual units, of whose residual it puts sgn(r)·√ρ(r²) in the
-  ///              place; none: least squares
-  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction(
-      std::unique_ptr<ceres::LossFunction> loss = nullptr) const;
-
-  /// Adds the residual block, bounds, and holds what the fit holds.
+  /// Adds the residual block of all samples, one record after the other, and bounds; holds what the
+  /// fit holds. Residuals of samples that do not count are 0.
   /// @param problem  takes ownership of what is added; this must outlive it
-  /// @param loss     of each sample, in residual units; none: least squares
+  /// @param loss     of each sample, in residual units, of whose residual it puts sgn(r)·√ρ(r²) in
+  ///                 the place; none: least squares
   void AddTo(ceres::Problem & problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);
 
  private:

@@ -2,9 +2,7 @@
 
 #include <memory>
 #include <span>
-#include <string>
 
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/record.h"

@@ -123,9 +123,9 @@ struct FitResult {
   std::optional<double> normal_load;
   double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, without meaning, if the records have one load
   double rms = 0.0;            ///< rms of the residuals that count [N or m], unweighted
-  /// The rms by which fits are compared [N or m]: n·ln of it is the likelihood's part that laws
-  /// differ in. Where the displacement is inexact that of the weighted residuals times the
-  /// geometric mean of what weighs them; else `rms`.
+  /// The rms by which fits are compared [N or m], −2 ln L = 2n·ln(likelihood_rms) + const: `rms`,
+  /// but with noise of the displacement the rms of the weighted residuals over the geometric mean
+  /// of the roots of their weights.
   double likelihood_rms = 0.0;
   double force_noise = 0.0;  ///< [N], known or estimated, of all records; 0 in a fit of the
                              ///< displacement

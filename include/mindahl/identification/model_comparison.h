@@ -15,12 +15,10 @@ namespace mindahl::identification {
 /// A model fitted to all samples that count, with its scores. By default it has none.
 struct ModelScore {
   const models::FrictionModel* model = nullptr;
-  bool rig = false;        ///< with a fitted spring in series
-  bool converged = false;  ///< without it there are no scores
+  bool rig = false;  ///< with a fitted spring in series
   std::size_t free_parameters = 0;
   double rms = 0.0;         ///< rms of the scored samples [N]
-  double aicc = 0.0;        ///< infinite where there is no fit
-  double delta_aicc = 0.0;  ///< above the least of the converged fits
+  double delta_aicc = 0.0;  ///< above the least
   /// Root mean square error [N] of the prediction of cycles that were held out; empty where there
   /// is nothing to hold out or a fit without them failed.
   std::optional<double> held_out_rms = {};
@@ -32,20 +30,19 @@ struct ModelScore {
 ///
 /// *Criterion*, for k free parameters and the variance of the noise:
 ///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff: ResidualStatistics
-/// Akaike (1974) and Hurvich & Tsai (1989) but for n_eff, which weighs the likelihood: residuals
-/// that are autocorrelated, or repeat in every stroke, carry less information. n_eff is that of the
-/// candidate with the least rms, for all: a poor model's residuals are autocorrelated, which must
-/// not count in its favour. Differences of rms below the rounding of the data are none.
+/// Akaike (1974) and Hurvich & Tsai (1989), weighed by the independent samples of the candidate
+/// with the least rms: a poor model's residuals are autocorrelated, which must not count in its
+/// favour.
 ///
-/// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt in turn to five
-/// folds, or as many as there are cycles; each fold is predicted by fits to the rest that start
-/// from the full fit, the samples held out still making history. Records with fewer than two closed
-/// cycles are never held out.
+/// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt in turn to at most
+/// five folds, each predicted by fits to the rest; samples held out still make history. Records
+/// with fewer than two closed cycles are never held out.
 ///
 /// @param options  of every fit; `model` and the term rig_stiffness are set here. A fixed rig
 ///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
 ///                 another
-/// @returns each model without, then with a rig, in the order of FrictionModels()
+/// @returns each model whose fit converged, without and with a rig, in the order of
+/// FrictionModels()
 /// @throws InvalidArgument as Fit does, or for a fit of the displacement
 /// Deterministic. Cost: 8 fits at Depth::kIntervals, and 8 a fold at Depth::kEstimate from where
 /// these are.

@@ -30,22 +30,10 @@ struct TermSelection {
   FitResult fit;       ///< with them
 };
 
-/// Fits a record with the terms that it requires.
-///
-/// A record that the law describes adequately gets none: its fit stays as it is. Otherwise up to
-/// two terms are added, one after the other, until hardly more than white noise is left. Every
-/// candidate for which there are data is scored by one Gauss-Newton step from the present solution;
-/// it may be added if it lowers the rms by 3 % or more, and if chance makes any candidate do so
-/// with a probability below 5 %. The best of these is fitted, or a candidate that has only a part
-/// of its terms and gains at least half as much. It is added unless its fit does not converge,
-/// gains less than 3 %, ends at a bound or moves Tc away from the half gap; then the next one is
-/// tried. Where more than noise is left, all terms that measured loops have in common are fitted
-/// together; they replace those two under the same rules.
-///
-/// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
-/// a candidate before it, or where it follows the contact's force, |r| > 0.3: its factor and the
-/// slip force then share what the record shows. No term is added with which Tc of a loop that
-/// slides leaves the half gap that was measured, unless it leaves nothing but noise.
+/// Fits a record with the terms that it requires (docs/identification.md): none where the law
+/// describes it adequately; else up to two, one after the other, or all that measured loops have in
+/// common. Candidates are scored by one Gauss–Newton step from the present solution (term_scores.h)
+/// and added by the gain of their fits.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
 /// @param fit      of the records with the options, at Depth::kFull

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <string_view>
 #include <utility>
 
-#include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
 
 namespace mindahl::identification {
@@ -68,9 +65,9 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
       options.fixed.contains(kName)) {
     return std::nullopt;
   }
-  const RecordFit& widest = result.WidestRecord();
-  const double peak_force = widest.facts.peak_force / widest.load_ratio;
-  if (!loop::Slides(widest.facts) || peak_force >= thresholds.mobilised * result.law.slip_force) {
+  const double peak_force = result.PeakForce();
+  if (!loop::Slides(result.WidestRecord().facts) ||
+      peak_force >= thresholds.mobilised * result.law.slip_force) {
     return std::nullopt;
   }
   FitOptions within = options;
@@ -149,20 +146,18 @@ bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds) {
          adequacy.p_value < thresholds.omission_chance;
 }
 
-Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
-  Adequacy adequacy = result.adequacy;
-  const double missed = MissedForce(result);
+void GradeUse(const Thresholds& thresholds, FitResult& result) {
+  Adequacy& adequacy = result.adequacy;
+  adequacy.misfit = MissedForce(result);
   const std::optional<double> half_gap = result.MeasuredHalfGap();
-  adequacy.misfit = missed;
-  adequacy.misfit_over_half_gap.reset();
-  if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
+  if (half_gap) adequacy.misfit_over_half_gap = adequacy.misfit / *half_gap;
   const double scale = half_gap ? *half_gap : result.MisfitScale();
-  const double ratio = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
+  const double ratio =
+      scale > 0 ? adequacy.misfit / scale : std::numeric_limits<double>::infinity();
   const bool is_seen = IsLoopSeen(result, thresholds);
   adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
                  : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
                                                                     : Use::kNone;
-  return adequacy;
 }
 
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds) {
@@ -170,24 +165,21 @@ bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds) {
   return result.outliers > 0 || result.residuals.r_squared >= thresholds.seen_loop;
 }
 
-std::optional<Finding> FindInadequate(const FitResult& result, const Thresholds& thresholds) {
-  if (!IsLoopSeen(result, thresholds)) {
-    return Finding{.code = "model_inadequate",
-                   .numbers = {{"r_squared", result.residuals.r_squared}},
-                   .kind = "no_loop"};
+void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result) {
+  Adequacy& adequacy = result.adequacy;
+  const bool is_loop = IsLoopSeen(result, thresholds);
+  const bool fails = adequacy.verdict == AdequacyVerdict::kDoubtful &&
+                     adequacy.misfit > thresholds.failing_misfit * result.MisfitScale();
+  if (is_loop && !fails) return;
+  adequacy.verdict = AdequacyVerdict::kInadequate;
+  Finding finding{.code = "model_inadequate"};
+  if (!is_loop) {
+    finding.numbers = {{"r_squared", result.residuals.r_squared}};
+    finding.kind = "no_loop";
+    adequacy.causes.clear();  // of first order, about a curve that is none of the record's
   }
-  const bool fails = result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-                     result.adequacy.misfit > thresholds.failing_misfit * result.MisfitScale();
-  return fails ? std::optional(Finding{.code = "model_inadequate"}) : std::nullopt;
-}
-
-FitResult WithoutInadequate(FitResult result, Finding finding) {
-  const bool is_loop = finding.kind != "no_loop";
-  result.adequacy.verdict = AdequacyVerdict::kInadequate;
-  // Omitted terms are taken to first order, here of a curve that is none of the record's.
-  if (!is_loop) result.adequacy.causes.clear();
+  // Another account of a curve that is not there goes too, also where it is but a note.
   std::erase_if(result.findings, [](const Finding& other) {
-    // Another account of a curve that is not there: also where it is but a note.
     return other.code == "shape_or_rig" ||
            (!other.parameters.empty() && !other.code.row().holds_without_model);
   });
@@ -198,7 +190,6 @@ FitResult WithoutInadequate(FitResult result, Finding finding) {
     finding.parameters.push_back(estimate.name);
   }
   result.findings.insert(result.findings.begin(), std::move(finding));
-  return result;
 }
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {

@@ -43,9 +43,7 @@ std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& th
 
 /// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
 /// what all omitted terms explain, the search ended at a limit of its own, the residuals are unlike
-/// noise, or they exceed the noise that the record has without a model: what does not repeat
-/// from stroke to stroke (pure error), or of a single cycle what differs between neighbouring
-/// samples. Tests of columns take a misfit that no column explains for autocorrelated noise.
+/// noise, or they exceed the noise that the record has without a model.
 /// @param causes  result of CausesOf()
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
@@ -55,22 +53,17 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
 /// adequate, and where noise alone does not often make what the terms explain.
 bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds);
 
-/// True if residuals are a poor misfit and remember for longer than noise_memory, by their
-/// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
-/// confounded with whatever changes slowly.
+/// True if residuals are a poor misfit and correlate, ρ = 1 − DW/2 from one sample to the next, for
+/// −1/ln ρ samples, longer than noise_memory: as whatever changes slowly does.
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 
-/// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use
-/// is judged by T*.
-Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);
+/// Sets `misfit`, `misfit_over_half_gap` and `use` of the adequacy. Without a half gap the use is
+/// judged by T*.
+void GradeUse(const Thresholds& thresholds, FitResult& result);
 
 /// True unless the loop is so small against the rest of the force that its shape and height are
 /// those of the rest.
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds);
-
-/// `model_inadequate` where the misfit is no noise and as large as failing_misfit or, as "no_loop",
-/// where none is seen in the force.
-std::optional<Finding> FindInadequate(const FitResult& result, const Thresholds& thresholds);
 
 /// Sets the verdict on each parameter, from estimates and findings alone: the worst of
 ///  - not identifiable without an interval, bounded below where the interval is open above;
@@ -79,10 +72,10 @@ std::optional<Finding> FindInadequate(const FitResult& result, const Thresholds&
 /// user holds is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
-/// Under a model that does not describe the record nothing of it is to be believed: takes back
-/// errors, limits, tests, and what the findings would have one do to know its parameters better;
-/// adds the finding with their names. Before Judge().
-/// @param finding  of FindInadequate()
-FitResult WithoutInadequate(FitResult result, Finding finding);
+/// Withdraws errors, limits, tests and findings on parameters where nothing of a model is to be
+/// believed: where its misfit is no noise and as large as failing_misfit or, as kind "no_loop",
+/// where no loop is seen in the force. Adds `model_inadequate`, which names the parameters. Before
+/// Judge().
+void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result);
 
 }  // namespace mindahl::identification

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -193,49 +192,40 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
   return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
 }
 
-/// True of Masing's loop that does not reach slip, of a contact that is fitted as unloaded far from
-/// where the record starts, near the end of its strokes or beyond: a first branch from a turn that
-/// was not recorded has twice the reach of the virgin one, and all but its form.
-bool BeganElsewhere(const Problem& problem, const Solution& solution, const FitResult& result) {
-  constexpr double kNearEnd = 0.2;  // [half range]
-  constexpr double kFar = 0.5;
-  if (!problem.is_virgin() || result.model->memory == models::Memory::kNone) return false;
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const auto [lowest, highest] = std::ranges::minmax(problem.data->records[r].excitation());
-    const double unloaded = solution.theta[problem.parameters.PositionOfOrigin(r)];
-    const double inside = std::min(unloaded - lowest, highest - unloaded);
-    const double away = std::abs(problem.data->records[r].excitation().front() - unloaded);
-    const double half = (highest - lowest) / 2;
-    if (inside < kNearEnd * half && away > kFar * half &&
-        !loop::HasSlipped(result.records[r].facts)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Records that turn less than twice and do not start where the contact is unloaded: the branch
-/// that they start on began before them, and how far it has come is not known.
+/// Contacts whose history before the record is not known:
+/// - a Masing fit short of slip that puts the unloaded position near a stroke's end and far from
+///   the first sample: the first branch then probably began at an unrecorded reversal, which makes
+///   it the virgin curve scaled by two, almost indistinguishable from it;
+/// - records that turn less than twice and do not start where the contact is unloaded: the branch
+///   that they start on began before them, and how far it has come is not known.
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const FitResult& result, const Thresholds& thresholds) {
-  if (BeganElsewhere(problem, solution, result)) {
-    return Finding{
-        .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
-  }
+  constexpr double kNearEnd = 0.2;  // [half range]
+  constexpr double kFar = 0.5;
+  const bool is_virgin_masing =
+      problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
+  bool is_told = false;  // by one record
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    if (record.CountTurns() >= 2 || IsOneCycle(record, thresholds)) return std::nullopt;
-    const std::size_t offset = problem.parameters.PositionOfOrigin(r);
-    is_assumed = is_assumed || problem.parameters[offset].assumed;
-    if (problem.parameters[offset].assumed) continue;
-    const double unloaded = solution.theta[offset];
+    const std::size_t origin = problem.parameters.PositionOfOrigin(r);
+    const double unloaded = solution.theta[origin];
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
+    const double half = (highest - lowest) / 2;
+    const double inside = std::min(unloaded - lowest, highest - unloaded);
     const double away = std::abs(record.excitation().front() - unloaded);
-    const bool starts_unloaded =
-        problem.is_virgin() && away <= thresholds.starts_unloaded * (highest - lowest) / 2;
-    if (starts_unloaded) return std::nullopt;
+    if (is_virgin_masing && inside < kNearEnd * half && away > kFar * half &&
+        !loop::HasSlipped(result.records[r].facts)) {
+      return Finding{
+          .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
+    }
+    const bool starts_unloaded = problem.is_virgin() && !problem.parameters[origin].assumed &&
+                                 away <= thresholds.starts_unloaded * half;
+    is_told =
+        is_told || record.CountTurns() >= 2 || IsOneCycle(record, thresholds) || starts_unloaded;
+    is_assumed = is_assumed || problem.parameters[origin].assumed;
   }
+  if (is_told) return std::nullopt;
   // A stroke that was cut has the slope of where it was, not of the contact at rest.
   if (is_assumed) {
     return Finding{.code = "unknown_past",
@@ -266,12 +256,14 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
 }
 
 /// A force that stands at its largest or least reading, to the last digit, in a twentieth of the
-/// samples, though it has noise and no other reading repeats. That is the sensor's limit and not
-/// the contact's.
-std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
+/// samples, though it has noise, the law leaves some, and no other reading repeats. That is the
+/// sensor's limit and not the contact's.
+std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
+                                        const FitResult& result) {
   constexpr double kOften = 0.05;  // of the samples
   constexpr double kLeast = 4;     // samples
   constexpr double kNoise = 1e-4;  // of the range: what is computed repeats its slip force
+  if (!(result.rms > kNoise * result.PeakForce())) return std::nullopt;
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> force = record.record.force;
     const auto [lowest, highest] = std::ranges::minmax(force);
@@ -284,8 +276,9 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
       std::erase(others, highest);
       const bool is_noisy =
           others.size() > 8 && loop::NoiseByDifferences(others, 4) > kNoise * (highest - lowest);
-      const std::set<double> distinct(others.begin(), others.end());
-      if (!is_noisy || 2 * distinct.size() < others.size()) continue;
+      std::ranges::sort(others);
+      const std::size_t repeated = std::ranges::unique(others).size();
+      if (!is_noisy || 2 * repeated > others.size()) continue;
       return Finding{.code = "force_at_limit",
                      .parameters = {"alpha", "slip_force"},
                      .numbers = {{"limit", limit}, {"share", at_limit / count}}};
@@ -310,12 +303,10 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
     }
     for (std::vector<double>& way : ways) {
       std::ranges::sort(way);
-      double last = -std::numeric_limits<double>::infinity();
-      for (const double place : way) {
-        if (place - last <= thresholds.same_place) continue;
-        ++places;
-        last = place;
-      }
+      const auto are_same = [&](double last, double next) {
+        return next - last <= thresholds.same_place;
+      };
+      places += way.size() - std::ranges::unique(way, are_same).size();
     }
   }
   // Few samples alone make wide intervals; these make narrow ones.
@@ -366,7 +357,7 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
       Append(findings, FindUnknownPast(problem, fitted.solution(), result, thresholds));
     }
     Append(findings, FindFewPlaces(problem, thresholds));
-    if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records));
+    if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records, result));
   }
   Append(findings, FindUntoldAsymmetry(result, thresholds));
   Append(findings, FindContradictedPrior(fitted, thresholds));

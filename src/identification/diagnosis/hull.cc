@@ -58,7 +58,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   beside[kRig] = best.theta[kStiffness] + std::log(1 / (1 - kStiffer));
   beside[kStiffness] -= std::log(kStiffer);
   beside[kShape] = kMindlinShapeExponent;
-  sprung.starts.push_back({.theta = std::move(beside)});
+  sprung.starts.push_back(std::move(beside));
   Descend(sprung, with_rig, solver);
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.

@@ -19,9 +19,10 @@
 /// samples there are, and its size is that of the record.
 namespace mindahl::identification {
 
-/// Includes a law that the record does not exclude in the intervals of σ, α and Tc: of σ and Tc the
-/// whole interval times the ratio of the values, of one that is open the value. One far stiffer
-/// than its rig is Jenkins' element, the same curve with no other α: it is left out.
+/// Includes a law that the record does not exclude in the intervals of σ, α and Tc: a
+/// closed interval of σ or Tc is extended by itself times the ratio of the values, an open one to
+/// the other value. A law far stiffer than its rig is Jenkins' element, the same curve with no
+/// other α: it is left out.
 void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
                 const Thresholds& thresholds, ParameterEstimates& parameters);
 
@@ -44,14 +45,12 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
                          std::span<const OmittedTerm> causes, double quantile,
                          std::span<ParameterEstimate> estimates);
 
-/// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
-/// where the measured loop slides over most of its stroke or reaches slip: it becomes the union of
-/// the fitted value, the measured half gap with its margin, and the interval so far, of noise and
-/// of the terms that the model omits, as far as that lies between the least and the largest of half
-/// gap, T* and the value, each with the margin. A loop that slides has carried its slip force: no
-/// less than the gap in the middle of the stroke, no more than its largest force. The margin is the
-/// scatter of the cycles' half gaps and the force that the model misses. Other intervals are left
-/// as they are; those of a fit that is of use count as including what the model misses.
+/// Returns the estimates with intervals that cover the model discrepancy. Where the measured loop
+/// reaches slip, that of Tc becomes the union of the fitted value, the measured half gap with its
+/// margin, and the interval so far as far as that lies between the least and the largest of half
+/// gap, T* and the value, each with the margin: the scatter of the cycles' half gaps and the force
+/// that the model misses. Other intervals are left as they are; those of a fit that is of use count
+/// as including what the model misses.
 ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
                                     const FitResult& result);
 

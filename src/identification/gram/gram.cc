@@ -15,15 +15,13 @@ constexpr double kLeastOfAxis = 1e-6;
 
 /// Scales columns to unit norm; those of zeros, and what overflows, become zero.
 Eigen::VectorXd Normalize(Eigen::MatrixXd& columns) {
-  Eigen::VectorXd norms = Eigen::VectorXd::Ones(columns.cols());
+  Eigen::VectorXd norms = columns.colwise().norm();
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    const double norm = columns.col(j).norm();
-    if (std::isfinite(norm) && norm > 0) {
-      norms[j] = norm;
-      columns.col(j) /= norm;
-    } else {
+    if (!(std::isfinite(norms[j]) && norms[j] > 0)) {
+      norms[j] = 1.0;
       columns.col(j).setZero();
     }
+    columns.col(j) /= norms[j];
   }
   return norms;
 }
@@ -81,8 +79,7 @@ double Gram::IndependentTests() const {
   return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
 }
 
-GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {
-  const std::vector<Eigen::Index> at(places.begin(), places.end());
+GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& at) const {
   GramAxes axes;
   const Eigen::MatrixXd free = free_(at, at);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free);

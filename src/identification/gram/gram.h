@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
+#include <vector>
 
 namespace mindahl::identification {
 
@@ -39,12 +39,12 @@ class Gram {
 
   /// Sum of squares of the residuals freed of J.
   [[nodiscard]] double sum_of_squares() const { return sum_of_squares_; }
-  /// Residuals' worth of noise that J takes up.
+  /// Noise variance that J absorbs, over that of one residual: tr[(JᵀJ)⁻¹JᵀΣJ].
   [[nodiscard]] double absorbed() const { return absorbed_; }
   /// Number of independent tests that a test of each of C's columns amounts to: (Σ√λ)²/Σλ of the
   /// eigenvalues λ of their correlations (Galwey 2009).
   [[nodiscard]] double IndependentTests() const;
-  [[nodiscard]] GramAxes AxesOf(std::span<const Eigen::Index> places) const;
+  [[nodiscard]] GramAxes AxesOf(const std::vector<Eigen::Index>& places) const;
   [[nodiscard]] GramAxes AxesOfAll() const;
   /// Returns the step to the least sum of squares of r + Jδ + Cγ.
   /// @param gains  of the axes: 1/value of least squares, less with a prior

@@ -136,7 +136,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
     const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
     TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
-    // Noise that remembers makes one more often than what all columns leave of it says.
+    // Under autocorrelated noise the F test of a single term is too liberal.
     if (process.order == 0) {
       least = std::min(least, term.p_value);
       explained = std::max(explained, term.explains * gram.sum_of_squares());

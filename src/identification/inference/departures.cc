@@ -249,61 +249,35 @@ bool HasTermOf(const Problem& problem, const Departure& departure) {
   });
 }
 
-/// Makes columns of all records' samples, weighted.
-class ColumnMaker {
- public:
-  ColumnMaker(const Problem& problem, std::span<const double> theta, const Thresholds& thresholds,
-              Response& response)
-      : problem_(problem),
-        theta_(theta),
-        places_(PlacesOf(problem, theta, thresholds.held_readings, response)),
-        moved_(*problem.data) {}
-
-  void Fill(DepartureColumn column, bool moves, std::span<double> values) {
-    std::ranges::transform(places_, values.begin(), column);
-    if (moves) FollowMotion(column, values);
-    auto value = values.begin();
-    for (const ScaledRecord& record : problem_.data->records) {
-      for (const double root_weight : record.root_weight) *value++ *= root_weight;
-    }
-  }
-
- private:
-  void FollowMotion(DepartureColumn column, std::span<double> motion);
-
-  const Problem& problem_;
-  std::span<const double> theta_;
-  std::vector<Place> places_;
-  ScaledRecords moved_;
-};
-
 /// Replaces a motion of the contact beside its displacement by what it changes in the response.
-void ColumnMaker::FollowMotion(DepartureColumn column, std::span<double> motion) {
+/// @param places  of all samples at θ
+void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<const Place> places,
+                  DepartureColumn column, std::span<double> motion) {
   constexpr double kSmall = 1e-6;  // of the half range of the displacement
   double largest = 0.0;
   for (const double way : motion) largest = std::max(largest, std::abs(way));
   if (largest == 0) return;
   const double step = kSmall / largest;
-  std::vector<double> theta(theta_.begin(), theta_.end());
+  ScaledRecords data = *problem.data;
   std::size_t k = 0;
-  for (std::size_t r = 0; r < moved_.records.size(); ++r) {
-    const std::vector<double>& measured = problem_.data->records[r].displacement;
-    if (problem_.is_virgin()) {
-      double& unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
-      Place first = places_[k];
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const std::vector<double>& measured = problem.data->records[r].displacement;
+    if (problem.is_virgin()) {
+      double& unloaded = theta[problem.parameters.PositionOfOrigin(r)];
+      Place first = places[k];
       if (measured[0] != unloaded) first.direction = std::copysign(1.0, measured[0] - unloaded);
       motion[k] = column(first);
       unloaded += step * column({.displacement = unloaded, .direction = first.direction});
     }
-    std::ranges::transform(measured, moved_.records[r].displacement.begin(),
+    std::ranges::transform(measured, data.records[r].displacement.begin(),
                            [&](double displacement) { return displacement + step * motion[k++]; });
   }
-  Problem problem = problem_;
-  problem.data = &moved_;
+  Problem moved = problem;
+  moved.data = &data;
   Response response;
-  response.Bind(problem);
+  response.Bind(moved);
   response.Evaluate(theta, motion);
-  for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = (motion[i] - places_[i].force) / step;
+  for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = (motion[i] - places[i].force) / step;
 }
 
 }  // namespace
@@ -313,12 +287,12 @@ std::span<const Departure> Departures() { return kDepartures; }
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      const Thresholds& thresholds, Response& response,
                                      std::size_t most) {
-  ColumnMaker maker(problem, theta, thresholds, response);
+  const std::vector<Place> places = PlacesOf(problem, theta, thresholds.held_readings, response);
   const bool is_forced = problem.data->is_forced();
-  std::size_t room = 0;
-  for (const Departure& departure : kDepartures) room += departure.columns.size();
+  constexpr std::size_t kRoom =
+      std::tuple_size_v<decltype(Departure::columns)> * kDepartures.size();
   DepartureColumns result;
-  result.columns.resize(static_cast<Eigen::Index>(problem.size()), static_cast<Eigen::Index>(room));
+  result.columns.resize(static_cast<Eigen::Index>(problem.size()), kRoom);
   Eigen::Index count = 0;
   for (const Departure& departure : kDepartures) {
     if (HasTermOf(problem, departure)) continue;
@@ -328,9 +302,13 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     for (const DepartureColumn column : columns) {
       if (column == nullptr) continue;
       const Eigen::Index place = count + std::ssize(term.places);
-      auto values = result.columns.col(place);
-      maker.Fill(column, departure.moves && !is_forced, {values.data(), problem.size()});
-      if (!values.isZero(0.0)) term.places.push_back(place);
+      const std::span<double> values(result.columns.col(place).data(), problem.size());
+      std::ranges::transform(places, values.begin(), column);
+      if (departure.moves && !is_forced) {
+        FollowMotion(problem, {theta.begin(), theta.end()}, places, column, values);
+      }
+      Weight(*problem.data, values);
+      if (!result.columns.col(place).isZero(0.0)) term.places.push_back(place);
     }
     if (static_cast<std::size_t>(count + std::ssize(term.places)) > most) break;
     count += std::ssize(term.places);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
 

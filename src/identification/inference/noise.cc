@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "core/probability.h"
 #include "identification/problem/scaled_records.h"
@@ -46,9 +45,8 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
   }
   statistics.samples = measured.size();
   const auto count = static_cast<double>(measured.size());
-  const double mean = std::accumulate(measured.begin(), measured.end(), 0.0) / count;
-  double variation = 0.0;
-  for (const double value : measured) variation += (value - mean) * (value - mean);
+  const Eigen::Map<const Eigen::ArrayXd> values(measured.data(), std::ssize(measured));
+  const double variation = (values - values.mean()).square().sum();
   statistics.rms = std::sqrt(sum_of_squares / count);
   statistics.r_squared = variation > 0 ? 1 - sum_of_squares / variation : 0.0;
   statistics.durbin_watson = sum_of_squares > 0 ? sum_of_steps / sum_of_squares : 2.0;
@@ -158,8 +156,8 @@ Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
   for (std::size_t lag = 0; lag <= order; ++lag) {
     const double mean =
         covariances[lag] / static_cast<double>(std::max<std::size_t>(counting[lag], 1));
-    covariances[lag] = mean * static_cast<double>(pairs[lag]) /
-                       static_cast<double>(std::max<std::size_t>(residual.size(), 1));
+    covariances[lag] =
+        mean * static_cast<double>(pairs[lag]) / static_cast<double>(residual.size());
   }
   return covariances;
 }
@@ -327,12 +325,11 @@ std::vector<double> VariancesOfRecords(const ScaledRecords& data,
   std::vector<double> variances;
   double all = 0.0;
   for (const ScaledRecord& record : data.records) {
-    double squares = 0.0;
-    for (const double r : residual.first(record.size())) squares += r * r;
+    const double squares =
+        Eigen::Map<const Eigen::VectorXd>(residual.data(), std::ssize(record.force)).squaredNorm();
     residual = residual.subspan(record.size());
     all += squares;
-    variances.push_back(squares /
-                        static_cast<double>(std::max<std::size_t>(CountedSamplesOf(record), 1)));
+    variances.push_back(squares / static_cast<double>(CountedSamplesOf(record)));
   }
   for (double& variance : variances) variance *= static_cast<double>(data.counted) / all;
   return variances;

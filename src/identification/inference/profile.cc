@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,8 +41,7 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
 }
 
 bool IsFree(const Estimates& fitted, std::size_t parameter) {
-  const Parameter& of = fitted.problem().parameters[parameter];
-  return !of.fixed && !of.absent;
+  return !fitted.problem().parameters[parameter].fixed;
 }
 
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.

@@ -10,11 +10,8 @@
 
 /// Intervals by the likelihood, where the parabola of its maximum is wrong.
 ///
-/// Far from gross slip a loop depends on σ and α/Tc, and weakly on the rest (docs/theory.md §10):
-/// the likelihood is a long curved valley along which Tc, and α with it, may change many times at
-/// little cost. The Jacobian at the best fit sees its floor there and no further. Beside a rig σ, α
-/// and k share another, which bends towards the rigid rig; beside a parallel spring σ and its
-/// slope.
+/// Far from gross slip, beside a rig or a parallel spring the likelihood is a long curved valley
+/// (docs/theory.md §10), of which the Jacobian at the best fit sees the floor there and no further.
 namespace mindahl::identification {
 
 /// Holds what the likelihood says of a parameter.

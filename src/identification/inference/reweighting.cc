@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,9 +50,9 @@ constexpr int kMostRounds = 50;
 constexpr double kSettled = 1e-4;   // rms change of the forces, over the noise: a valley has no end
 constexpr double kHarmless = 1e-2;  // likewise, of what goes on for ever: it matters not
 
-/// Samples that count less the free parameters, at least 1.
+/// Samples that count less the free parameters, of which there are fewer.
 double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
-  return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
+  return static_cast<double>(data.counted - parameters);
 }
 
 /// Standard deviation of normal values of mean 0, one or more, by the median of their magnitudes,
@@ -164,10 +163,8 @@ class Reweighting {
   /// Writes the cost of the solution under the weights that it implies.
   /// @returns what these stand for
   Noise Finish() {
-    std::vector<double> residual(problem_.size());
-    EvaluateResidual(problem_, solution_.theta, solver_.response, residual);
-    solution_.sum_of_squares = problem_.parameters.PriorCost(solution_.theta);
-    for (const double r : residual) solution_.sum_of_squares += r * r;
+    solution_.sum_of_squares =
+        (weights_ * Residual()).square().sum() + problem_.parameters.PriorCost(solution_.theta);
     solution_.report.final_cost = solution_.sum_of_squares / 2;
     if (drawn_ != nullptr) noise_.drawn = weights_.matrix().asDiagonal() * errors_;
     return std::move(noise_);

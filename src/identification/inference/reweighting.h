@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <span>
-#include <vector>
 
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
@@ -26,8 +24,7 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
 ///   sample (effective variance, Orear 1982): w = σ_F²/(σ_F² + σ_T²), so that steep branches do not
 ///   dominate; σ_F² where it is not known is what the residuals leave for it
 /// - a robust loss of the standardised residual, whose scale is the median absolute deviation:
-///   ceres::Solve minimises it (solve/search.h), and the weights ψ(z)/z that it implies at
-///   the minimum are those of the errors
+///   ceres::Solve minimises it, and the weights ψ(z)/z at the minimum are those of the errors
 /// @param problem   of `data`
 /// @param data      its weights are written
 /// @param drawn     readings of the records; null where their displacements are exact

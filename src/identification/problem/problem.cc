@@ -386,15 +386,14 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   }
 }
 
-/// Weights values of every sample.
+}  // namespace
+
 void Weight(const ScaledRecords& data, std::span<double> values) {
   std::size_t k = 0;
   for (const ScaledRecord& record : data.records) {
     for (const double weight : record.root_weight) values[k++] *= weight;
   }
 }
-
-}  // namespace
 
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
   std::size_t k = 0;

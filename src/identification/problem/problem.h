@@ -103,6 +103,9 @@ void Predict(const Problem& problem, std::span<const double> theta, Response& re
 /// Takes what is measured off what the model predicts, of every sample; no weight.
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
 
+/// Multiplies values of every sample by the roots of their weights.
+void Weight(const ScaledRecords& data, std::span<double> values);
+
 /// Weighted residuals, model − measured, of every sample; binds the response to the problem.
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
                       std::span<double> residual);

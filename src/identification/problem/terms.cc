@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace mindahl::identification {
 namespace {
@@ -279,16 +280,9 @@ constexpr auto kTermsOfDisplacement = [] {
 }  // namespace
 
 double Term::scale(const TermUnits& units) const {
-  double product = powers.of_file ? units.force_sense : 1.0;
-  const auto times = [&product](double by, int power) {
-    for (; power > 0; --power) product *= by;
-    for (; power < 0; ++power) product /= by;
-  };
-  times(units.force, powers.force);
-  times(units.half_duration, powers.time);
-  times(units.cycle, powers.cycle);
-  times(units.length, powers.length);
-  return product;
+  return (powers.of_file ? units.force_sense : 1.0) * std::pow(units.force, powers.force) *
+         std::pow(units.half_duration, powers.time) * std::pow(units.cycle, powers.cycle) *
+         std::pow(units.length, powers.length);
 }
 
 double Term::reference(const TermUnits& units) const {

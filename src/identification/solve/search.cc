@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -76,7 +75,7 @@ class Plane {
     const Parameters& parameters = problem_.parameters;
     const Parameter& shape = parameters[kShape];
     const Parameter& rig = parameters[kRig];
-    const bool rig_is_open = !rig.absent && !rig.fixed && !rig.has_prior();
+    const bool rig_is_open = !rig.fixed && !rig.has_prior();
     const std::vector<double> ratios =
         rig_is_open ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
     const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
@@ -181,20 +180,21 @@ class Plane {
 };
 
 /// Returns the options' own start, where it leaves nothing to be looked for.
-std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options) {
+std::optional<std::vector<double>> GivenStart(const Parameters& parameters,
+                                              const FitOptions& options) {
   if (options.start.empty()) return std::nullopt;
-  StartingPoint start;
+  std::vector<double> theta;
   for (const Parameter& parameter : parameters) {
-    start.theta.push_back(parameter.theta);
+    theta.push_back(parameter.theta);
     const bool has_start = parameter.term->is_linear || parameter.term->start;
     if (!parameter.fixed && !parameter.started_by_user && !has_start) return std::nullopt;
   }
-  return start;
+  return theta;
 }
 
-/// Returns the thinned records where they determine the law: they have the history of the whole.
-/// But a window or a fold may leave little of them, a column that wanders as it likes explains a
-/// few samples a stroke whatever the law is, and kinks are where samples are.
+/// Returns the thinned records, which have the history of the whole; all samples where fewer than
+/// four a parameter are left, where a covariate could explain so few by itself, and of α = 0, of
+/// which the cost has a kink wherever a sample begins to slip.
 const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
                                     const ScaledRecords& thinned) {
   constexpr std::size_t kEnough = 4;  // samples a parameter
@@ -210,10 +210,9 @@ const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
                     Solver& solver) {
   const Problem& problem = candidate.problem;
-  std::vector<StartingPoint>& starts = candidate.starts;
-  starts.clear();
+  candidate.starts.clear();
   if (auto given = GivenStart(problem.parameters, options)) {
-    starts.push_back(std::move(*given));
+    candidate.starts.push_back(std::move(*given));
     return 0.0;
   }
   constexpr std::size_t kStartsAmongKinks = 4;
@@ -240,6 +239,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   });
   const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
   Solution scratch;
+  std::vector<Look> starts;
   for (Look& look : looks) {
     const double least = looks.front().cost;
     if (!bent && starts.size() >= most &&
@@ -250,15 +250,16 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
       const Parameter& parameter = thin.parameters[p];
       if (parameter.started_by_user) look.theta[p] = parameter.theta;
     }
-    StartingPoint& start = starts.emplace_back(StartingPoint{std::move(look.theta), look.cost});
+    Look& start = starts.emplace_back(std::move(look));
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
     start.theta = scratch.theta;
     start.cost = scratch.sum_of_squares;
   }
-  std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
+  std::ranges::stable_sort(starts, {}, &Look::cost);
   if (starts.size() > most) starts.resize(most);
+  for (Look& start : starts) candidate.starts.push_back(std::move(start.theta));
   return starts.empty() ? kNoCost : starts.front().cost;
 }
 
@@ -291,7 +292,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
     Descend(smaller, options, solver);
     const Solution& solution = smaller.solution;
     if (!std::isfinite(solution.sum_of_squares)) continue;
-    candidate.starts.push_back({.theta = solution.theta, .cost = solution.sum_of_squares});
+    candidate.starts.push_back(solution.theta);
   }
 }
 
@@ -316,7 +317,7 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   std::vector<std::vector<double>> neighbours;
   // Other parts of the compliance in the rig: a sharp knee behind a soft rig resembles a round one.
   const Parameter& rig = parameters[kRig];
-  const bool rig_is_open = !rig.absent && !rig.fixed && !rig.has_prior();
+  const bool rig_is_open = !rig.fixed && !rig.has_prior();
   const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
   for (const double share : {0.2, 0.5, 0.8, 0.99}) {
     for (const double shape : {0.02, 1.0}) {
@@ -365,8 +366,8 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
   solver.Bind(candidate.problem);
-  for (const StartingPoint& start : candidate.starts) {
-    SearchOnce(start.theta, SolverOptionsOf(options), solver, best);
+  for (const std::vector<double>& start : candidate.starts) {
+    SearchOnce(start, SolverOptionsOf(options), solver, best);
   }
 }
 

@@ -8,11 +8,6 @@
 
 namespace mindahl::identification {
 
-struct StartingPoint {
-  std::vector<double> theta;  // all parameters
-  double cost = 0.0;          // on the thinned record
-};
-
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
   Candidate(const ScaledRecords& data, const FitOptions& options,
@@ -20,7 +15,7 @@ struct Candidate {
       : problem(data, options, initial_state) {}
 
   Problem problem;
-  std::vector<StartingPoint> starts = {};
+  std::vector<std::vector<double>> starts = {};  // θ of all parameters
   Solution solution = {};
 };
 
@@ -29,10 +24,8 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// Finds the candidate's starting points, best first, from the data or as the options give them.
 ///
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
-/// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
-/// is unloaded at the first sample, a rig of unknown stiffness tried at some ratios to the
-/// contact's. The best of each α, or where α is held of each third of the plane, goes on to the
-/// minimum of the thinned record.
+/// linear eliminated (docs/theory.md §12). The best of each α, or where α is held of each third of
+/// the plane, goes on to the minimum of the thinned record.
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
                     Solver& solver);
@@ -46,11 +39,9 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
 /// Solves from each starting point and keeps the best solution.
 void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 
-/// Solves again from next to the best solution where there may be lower minima, and goes on from
-/// the best as long as one is lower: a law with a sharp knee has a minimum between any two samples,
-/// a loop that hardly slips one where it just slips, one with a rig others where the rig takes
-/// another part of the compliance, and a noisy virgin loop one that had been loaded before. Where a
-/// start is given it is the only one.
+/// Solves again from next to the best solution where there may be lower minima, as of a law with a
+/// sharp knee, of a loop that hardly slips and beside a rig, and goes on from the best as long as
+/// one is lower. Where a start is given it is the only one.
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 }  // namespace mindahl::identification

@@ -208,13 +208,6 @@ void TinySearch::Run(std::span<double> u) {
   std::ranges::copy(at_.u, u.begin());
 }
 
-/// Returns on which side of its bounds each parameter lies; one that is held lies inside.
-std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta) {
-  std::vector<BoundSide> sides(theta.size(), BoundSide::kInside);
-  for (const std::size_t p : parameters.free()) sides[p] = SideOf(parameters[p], theta[p]);
-  return sides;
-}
-
 bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
   for (std::size_t j = 0; j < u.size(); ++j) {
     if (SideOf(residual.Searched(j), u[j]) != BoundSide::kInside) return true;
@@ -223,6 +216,12 @@ bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
 }
 
 }  // namespace
+
+std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta) {
+  std::vector<BoundSide> sides(theta.size(), BoundSide::kInside);
+  for (const std::size_t p : parameters.free()) sides[p] = SideOf(parameters[p], theta[p]);
+  return sides;
+}
 
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
   switch (loss) {

@@ -31,6 +31,9 @@ struct Solution {
   SolverReport report = {};  // costs in units of the data
 };
 
+/// Returns on which side of its bounds each parameter lies; one that is held lies inside.
+std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta);
+
 /// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
 /// (Huber 1981; Holland & Welsch 1977): null for none.
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss);
