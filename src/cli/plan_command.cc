@@ -101,7 +101,9 @@ Plan MakePlan(const PlanOptions& options) {
   if (options.displacement_noise) expected.displacement_noise = *options.displacement_noise;
   plan.slip = SlipReach(expected.law, expected.rig);
   std::vector<double> amplitudes = options.amplitudes;
-  constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
+  constexpr double kMargin = 1.03;  // of an amplitude that is to reach slip
+  constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, kMargin,
+                                  1.2, 1.5, 2.,  3.,  5.,  10.};
   if (amplitudes.empty()) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
@@ -111,8 +113,15 @@ Plan MakePlan(const PlanOptions& options) {
     plan.loops.push_back(identification::ExpectFit(expected, protocol));
   }
   if (plan.wanted.empty()) return plan;
+  // Just short of slip the error of a sharp knee's Tc is many times that at slip: an amplitude that
+  // reaches slip is to give the wanted precision even if it is smaller by the margin.
   const auto factor_of = [&](const ExpectedFit& fit) {
-    return identification::CyclesFactor(fit, plan.wanted);
+    const double factor = identification::CyclesFactor(fit, plan.wanted);
+    Protocol smaller = fit.protocol;
+    smaller.amplitude /= kMargin;
+    if (fit.protocol.amplitude < plan.slip) return factor;
+    return std::max(factor, identification::CyclesFactor(
+                                identification::ExpectFit(expected, smaller), plan.wanted));
   };
   std::optional<double> least;
   for (const ExpectedFit& fit : plan.loops) {

@@ -27,6 +27,24 @@ TEST_F(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\n +- +[0-9]"));
 }
 
+TEST_F(PlanCommand, RecommendsAMarginBeyondSlipOfASharpKnee) {
+  // 3 % short of slip the error of Tc is 2.7 % for α = 0.05, thirty times that at slip, and 0.2 %
+  // for α = 1/3: an amplitude at slip reaches 1 % only where a smaller one does.
+  const auto is_reached = [](double alpha, double over_slip) {
+    const double slip = 1e-6 / (1 - alpha);  // Tc/(σ(1 − α))
+    const Outcome outcome =
+        RunCommand("plan --sigma 4e7 --slip-force 40 --force-noise 0.4 --want slip_force=1%" +
+                   Words{"--alpha", fmt::format("{}", alpha), "--amplitude",
+                         fmt::format("{}", over_slip * slip)});
+    EXPECT_THAT(outcome.status, ::testing::AnyOf(kDone, kNotEstablished));
+    return outcome.status == kDone;
+  };
+  for (const double over_slip : {1.0001, 1.01, 1.04}) {
+    EXPECT_EQ(is_reached(0.05, over_slip), over_slip > 1.03) << over_slip;
+    EXPECT_TRUE(is_reached(1.0 / 3, over_slip)) << over_slip;
+  }
+}
+
 TEST_F(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
   const std::string clean = Simulated("--lambda 2 --cycles 3 --noise-force 0.05", "clean.csv");
   // The same in µm and mN, behind another column, without a header.
