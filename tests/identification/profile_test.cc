@@ -81,5 +81,33 @@ TEST(Profile, LeavesOpenWhatASpringHides) {
   }
 }
 
+TEST(Profile, GivesNoStiffnessAtTheEndOfAWideIntervalBesideASpring) {
+  // With Tc open, σ is any of a range whose lower end is next to the best fit, and the spring has
+  // the rest: neither is determined where the range goes beyond three times the value.
+  constexpr double kEitherWay = 3.0;
+  int open = 0;
+  for (const double shape : {0.05, 0.5, 0.7, 1.0}) {
+    for (const double noise : {0.001, 0.01}) {
+      const BranchLaw law{4e7, shape, 40.0};
+      Generator generator(1);
+      const auto displacement =
+          Cycling(Wave::kSine, 0.6 * law.slip_force / law.tangential_stiffness, 3.0, 200);
+      const Record record =
+          WithForceNoise(testing::LoopOf(law, displacement), noise * law.slip_force, generator);
+      const FitResult fit = FitOne(record, {.terms = {"plateau_slope"}});
+      SCOPED_TRACE(fmt::format("α {}, noise {}", shape, noise));
+      const ParameterEstimate& sigma = *fit.Find("sigma");
+      if (sigma.is_known()) {
+        EXPECT_LE(*sigma.upper95, kEitherWay * sigma.value);
+        EXPECT_GE(*sigma.lower95, sigma.value / kEitherWay);
+        continue;
+      }
+      ++open;
+      EXPECT_EQ(fit.Find("plateau_slope")->identifiability, Identifiability::kNotIdentifiable);
+    }
+  }
+  EXPECT_GT(open, 0);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::profile_test

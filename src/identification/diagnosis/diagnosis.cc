@@ -142,6 +142,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   // What is known does not depend on the confidence that is asked for.
   const double to_95 = StudentQuantile(result.degrees_of_freedom, 0.95) /
                        StudentQuantile(result.degrees_of_freedom, result.confidence);
+  const bool hides = HidesInSpring(result);
   for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
@@ -149,10 +150,15 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     }
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
+    // Beside a spring the value may be at the lower end: the ratio is then that of an interval as
+    // wide on its other side.
+    const double ratio = hides
+                             ? std::pow(std::max(upper / estimate.value, estimate.value / lower), 2)
+                             : upper / lower;
     const bool wide =
         name == "alpha"
             ? to_95 * (upper - lower) > thresholds.widest_shape * std::max(1.0, estimate.value)
-            : !(lower > 0) || std::pow(upper / lower, to_95) > thresholds.widest_ratio;
+            : !(lower > 0) || std::pow(ratio, to_95) > thresholds.widest_ratio;
     const bool is_said = std::ranges::any_of(result.findings, [&](const Finding& finding) {
       return finding.code.row().verdict == Identifiability::kNotIdentifiable &&
              std::ranges::find(finding.parameters, name) != finding.parameters.end();
@@ -161,7 +167,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     findings.push_back({.code = "not_identifiable",
                         .parameters = {std::string(name)},
                         .numbers = {{"lower", lower}, {"upper", upper}},
-                        .kind = HidesInSpring(result) ? "with_spring" : "wide"});
+                        .kind = hides ? "with_spring" : "wide"});
+    if (hides) findings.back().parameters.emplace_back("plateau_slope");
   }
   return findings;
 }

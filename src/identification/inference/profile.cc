@@ -211,6 +211,11 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];
   if (slip_force.status == ParameterStatus::kFixed || slip_force.upper95) return parameters;
+  if (IsFree(fitted, kSpring) && !parameters[kStiffness].upper95) {
+    ParameterEstimate& spring = estimate_of(kSpring);  // what it adds to σ is determined, not each
+    SetInterval(spring, {.upper = spring.upper95});
+    spring.standard_error.reset();
+  }
   // With α at its upper bound, the likelihood does not determine the lower end of Tc either.
   const bool by_bound = parameters[kShape].status == ParameterStatus::kAtUpperBound;
   if (by_bound) SetInterval(slip_force, {.lower = 0.0});
