@@ -172,7 +172,7 @@ class Writer {
     AddParameter("friction", "Tc", slip_force, remark);
   }
 
-  /// Says σ, and what a still needs where some of the materials are known.
+  /// Says σ, that it includes a drag, and what a still needs where some of the materials are known.
   void AddStiffness() {
     const ParameterEstimate& sigma = *fit_.Find("sigma");
     const contact::KnownContact& known = report_.known;
@@ -188,8 +188,12 @@ class Writer {
     const bool is_started = !missing.empty() && missing.size() < std::size(materials);
     const bool needs_them =
         is_started && !known.tangential_compliance && !report_.is_torsional() && sigma.is_known();
-    AddParameter("stiffness", "σ", sigma,
-                 needs_them ? fmt::format("a needs {}", fmt::join(missing, ", ")) : "");
+    std::vector<std::string> remarks;
+    if (sigma.is_known() && fit_.Find("drag_fraction") != nullptr) {
+      remarks.emplace_back("σ and Tc include the drag: times 1 − drag_fraction without it");
+    }
+    if (needs_them) remarks.push_back(fmt::format("a needs {}", fmt::join(missing, ", ")));
+    AddParameter("stiffness", "σ", sigma, fmt::format("{}", fmt::join(remarks, ", ")));
   }
 
   /// Says whether an exponent is a theory's; a rig that is not told from the contact changes it.

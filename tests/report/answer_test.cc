@@ -326,6 +326,17 @@ TEST(Answer, HasATermOnceInAnswerAndDetails) {
   EXPECT_EQ(text.find("viscous"), text.rfind("viscous")) << text;
 }
 
+TEST(Answer, SaysThatStiffnessAndSlipForceIncludeADrag) {
+  ReportInput input = Doubtful();
+  const std::string clause = "σ and Tc include the drag: times 1 − drag_fraction without it";
+  EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr(clause)));
+  testing::AddParameter(input.fit, "drag_fraction", "-", 0.3, 0.01);
+  EXPECT_THAT(LineOf(input, "stiffness"), HasSubstr(clause));
+  // What has no value includes nothing.
+  input.fit.parameters.front().identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr(clause)));
+}
+
 TEST(Answer, NamesACauseWithoutATermInPlaceOfANextStep) {
   ReportInput input = Doubtful();
   identification::Cause cause;
