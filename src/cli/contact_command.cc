@@ -16,9 +16,9 @@ void Add(Json& rows, const char* name, const std::optional<contact::UncertainVal
 
 void RunContact(const ContactOptions& given, Console& console) {
   Validate(given);
-  const contact::PredictedContact made = ResolveContact(given);
+  const contact::PredictedContact made = contact::PredictContact(given.known);
   Json quantities = Json::object();
-  Add(quantities, "friction_coefficient", given.friction_coefficient, "-", "mu");
+  Add(quantities, "friction_coefficient", given.known.friction_coefficient, "-", "mu");
   Add(quantities, "normal_load", given.known.normal_load, "N", "N");
   Add(quantities, "effective_modulus", made.effective_modulus, "Pa", "E*");
   Add(quantities, "equivalent_radius", made.equivalent_radius, "m", "rho");

@@ -196,7 +196,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_fric
   add("--compliance", options.known.tangential_compliance,
       "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance", "1/Pa", "1/PA");
   if (!has_friction) return;
-  add("--friction", options.friction_coefficient, "friction coefficient mu [-]", "-", "MU");
+  add("--friction", options.known.friction_coefficient, "friction coefficient mu [-]", "-", "MU");
 }
 
 void AddLawParameters(const OptionGroup& group, LawOptions& law) {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "contact/requirements.h"
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 
 namespace mindahl::contact {
 
@@ -105,6 +105,7 @@ UncertainValue Propagated(const KnownContact& known, const Compute& compute) {
     add(body->radius);
     add(body->poisson_ratio, true);
   }
+  add(moved.friction_coefficient);
   add(moved.normal_load);
   add(moved.contact_radius);
   add(moved.tangential_compliance);
@@ -147,6 +148,7 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
 }  // namespace
 
 void Validate(const KnownContact& known) {
+  RequireKnown("friction [-]", known.friction_coefficient);
   RequireKnown("normal load [N]", known.normal_load);
   RequireKnown("contact radius [m]", known.contact_radius);
   RequireKnown("compliance [1/Pa]", known.tangential_compliance);
@@ -167,29 +169,20 @@ std::optional<double> TangentialCompliance(const KnownContact& known) {
   return KnowsCompliance(known) ? std::optional(ComplianceOf(known)) : std::nullopt;
 }
 
-PredictedContact PredictContact(const KnownContact& known,
-                                const UncertainValue& friction_coefficient) {
+PredictedContact PredictContact(const KnownContact& known) {
   Validate(known);
-  RequireKnown("friction [-]", friction_coefficient);
   const bool by_radius = known.contact_radius && known.tangential_compliance;
   const bool by_bodies = AreElastic(known) && KnowsRadii(known);
-  if (!known.normal_load || by_radius == by_bodies) {
-    throw InvalidArgument(
-        "contact: must be given by its normal load and either contact radius and tangential "
-        "compliance or E, ν and R of both bodies");
+  if (!known.friction_coefficient || !known.normal_load || by_radius == by_bodies) {
+    Refuse(
+        "a contact needs --friction, --normal-load and either --contact-radius with --compliance "
+        "or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2");
   }
   const auto radius_of = [by_radius](const KnownContact& at) {
     return by_radius ? at.contact_radius->value : HertzRadiusOf(at);
   };
-  const double friction = friction_coefficient.value;
-  const auto slip_force_of = [friction](const KnownContact& at) {
-    return GrossSlipForce(friction, at.normal_load->value);
-  };
-  /// Adds the error of μ, to which the quantity is proportional.
-  const auto with_friction = [&](UncertainValue of) {
-    const double relative = friction_coefficient.standard_error / friction;
-    of.standard_error = std::hypot(of.standard_error, of.value * relative);
-    return of;
+  const auto slip_force_of = [](const KnownContact& at) {
+    return GrossSlipForce(at.friction_coefficient->value, at.normal_load->value);
   };
   PredictedContact predicted;
   if (by_bodies) {
@@ -204,10 +197,10 @@ PredictedContact PredictContact(const KnownContact& known,
   predicted.tangential_stiffness = Propagated(known, [&](const KnownContact& at) {
     return MindlinTangentialStiffness(radius_of(at), ComplianceOf(at));
   });
-  predicted.slip_force = with_friction(Propagated(known, slip_force_of));
-  predicted.gross_slip_displacement = with_friction(Propagated(known, [&](const KnownContact& at) {
+  predicted.slip_force = Propagated(known, slip_force_of);
+  predicted.gross_slip_displacement = Propagated(known, [&](const KnownContact& at) {
     return GrossSlipDisplacement({radius_of(at), ComplianceOf(at), slip_force_of(at)});
-  }));
+  });
   return predicted;
 }
 

@@ -31,7 +31,7 @@ bool IsAnythingGiven(const ContactOptions& options) {
   const auto is_any_known = [](const KnownBody& body) {
     return body.youngs_modulus || body.poisson_ratio || body.radius;
   };
-  return options.friction_coefficient || known.normal_load || known.contact_radius ||
+  return known.friction_coefficient || known.normal_load || known.contact_radius ||
          known.tangential_compliance || is_any_known(known.body_1) || is_any_known(known.body_2);
 }
 
@@ -42,24 +42,6 @@ void Validate(const ContactOptions& options, std::size_t records) {
     Refuse("--normal-load: {} loads for {} record{}: give one for all or one a record", loads,
            records, records > 1 ? "s" : "");
   }
-  if (options.friction_coefficient) {
-    RequirePositive("friction [-]", options.friction_coefficient->value);
-  }
-}
-
-contact::PredictedContact ResolveContact(const ContactOptions& options) {
-  const contact::KnownContact& known = options.known;
-  const auto is_whole = [](const KnownBody& body) {
-    return body.youngs_modulus && body.poisson_ratio && body.radius;
-  };
-  const bool by_radius = known.contact_radius && known.tangential_compliance;
-  const bool by_bodies = is_whole(known.body_1) && is_whole(known.body_2);
-  if (options.friction_coefficient && known.normal_load && by_radius != by_bodies) {
-    return contact::PredictContact(known, *options.friction_coefficient);
-  }
-  Refuse(
-      "a contact needs --friction, --normal-load and either --contact-radius with --compliance or "
-      "--youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2");
 }
 
 bool IsAnythingGiven(const LawRequest& request) {
@@ -78,7 +60,7 @@ BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
   }
   BranchLaw law;
   if (by_contact) {
-    const contact::PredictedContact predicted = ResolveContact(request.contact);
+    const contact::PredictedContact predicted = contact::PredictContact(request.contact.known);
     law = {.tangential_stiffness = predicted.tangential_stiffness.value,
            .shape_exponent = contact::kMindlinShapeExponent,
            .slip_force = predicted.slip_force.value};

@@ -18,7 +18,8 @@ constexpr double kFriction = 0.4;
 
 /// Knowledge of everything but what the loop or Hertz gives.
 KnownContact Known(const Body& first, const Body& second) {
-  return {.normal_load = kNormalLoad,
+  return {.friction_coefficient = kFriction,
+          .normal_load = kNormalLoad,
           .body_1 = {first.youngs_modulus, first.poisson_ratio, first.radius},
           .body_2 = {second.youngs_modulus, second.poisson_ratio, second.radius}};
 }
@@ -173,7 +174,8 @@ UncertainValue Relative(double value, double relative_error) {
 
 /// A steel ball in an aluminium seat, nothing exact.
 KnownContact UncertainBodies() {
-  return {.normal_load = Relative(kNormalLoad, kLoadError),
+  return {.friction_coefficient = Relative(kFriction, kFrictionError),
+          .normal_load = Relative(kNormalLoad, kLoadError),
           .body_1 = {Relative(210e9, kModulusError1), UncertainValue(0.3, kPoissonError1),
                      Relative(0.02, kRadiusError1)},
           .body_2 = {Relative(70e9, kModulusError2), UncertainValue(0.33, kPoissonError2),
@@ -186,9 +188,10 @@ double ErrorByChanges(KnownContact known,
   constexpr double kChange = 1e-3;  // of a standard error
   double squares = 0.0;
   for (std::optional<UncertainValue>* input :
-       {&known.normal_load, &known.contact_radius, &known.tangential_compliance,
-        &known.body_1.youngs_modulus, &known.body_1.poisson_ratio, &known.body_1.radius,
-        &known.body_2.youngs_modulus, &known.body_2.poisson_ratio, &known.body_2.radius}) {
+       {&known.friction_coefficient, &known.normal_load, &known.contact_radius,
+        &known.tangential_compliance, &known.body_1.youngs_modulus, &known.body_1.poisson_ratio,
+        &known.body_1.radius, &known.body_2.youngs_modulus, &known.body_2.poisson_ratio,
+        &known.body_2.radius}) {
     if (!*input) continue;
     const UncertainValue at = **input;
     *input = at.value + kChange * at.standard_error;
@@ -230,26 +233,21 @@ TEST(UncertainInputs, ActThroughGivenRadiusAndCompliance) {
 
 TEST(UncertainInputs, ActOnAPredictedContact) {
   const KnownContact known = UncertainBodies();
-  const UncertainValue friction = Relative(kFriction, kFrictionError);
   using C = PredictedContact;
-  const auto expect = [&](const std::function<UncertainValue(const C&)>& quantity,
-                          double of_friction) {
-    const double by_changes = ErrorByChanges(known, [&](const KnownContact& at) {
-      return quantity(PredictContact(at, friction)).value;
-    });
-    const UncertainValue stated = quantity(PredictContact(known, friction));
-    EXPECT_NEAR(stated.standard_error / std::hypot(by_changes, of_friction * stated.value), 1.0,
-                kByChanges)
-        << stated.value;
+  const auto expect = [&](const std::function<UncertainValue(const C&)>& quantity) {
+    const double by_changes = ErrorByChanges(
+        known, [&](const KnownContact& at) { return quantity(PredictContact(at)).value; });
+    const UncertainValue stated = quantity(PredictContact(known));
+    EXPECT_NEAR(stated.standard_error / by_changes, 1.0, kByChanges) << stated.value;
   };
-  expect([](const C& c) { return *c.effective_modulus; }, 0.0);
-  expect([](const C& c) { return *c.equivalent_radius; }, 0.0);
-  expect([](const C& c) { return c.tangential_compliance; }, 0.0);
-  expect([](const C& c) { return c.contact_radius; }, 0.0);
-  expect([](const C& c) { return c.maximum_pressure; }, 0.0);
-  expect([](const C& c) { return c.tangential_stiffness; }, 0.0);
-  expect([](const C& c) { return c.slip_force; }, kFrictionError);
-  expect([](const C& c) { return c.gross_slip_displacement; }, kFrictionError);
+  expect([](const C& c) { return *c.effective_modulus; });
+  expect([](const C& c) { return *c.equivalent_radius; });
+  expect([](const C& c) { return c.tangential_compliance; });
+  expect([](const C& c) { return c.contact_radius; });
+  expect([](const C& c) { return c.maximum_pressure; });
+  expect([](const C& c) { return c.tangential_stiffness; });
+  expect([](const C& c) { return c.slip_force; });
+  expect([](const C& c) { return c.gross_slip_displacement; });
 }
 
 TEST(UncertainInputs, CountAnInputOnceThatEntersTwice) {
@@ -266,14 +264,14 @@ TEST(UncertainInputs, OfAnIncompressibleBodyAreThoseFromBelow) {
   // 1/E* = 2(1 − ν²)/E: ν changes it by 2ν/(1 − ν²) of its error, of which each body has half.
   KnownContact known = Known({1e6, 0.5, 0.02}, {1e6, 0.5, 0.02});
   known.body_2.poisson_ratio = UncertainValue(0.5, 0.001);
-  const UncertainValue modulus = *PredictContact(known, 0.5).effective_modulus;
+  const UncertainValue modulus = *PredictContact(known).effective_modulus;
   constexpr double kOneSided = 1e-4;
   EXPECT_NEAR(modulus.standard_error / modulus.value, 0.001 * 0.5 / 0.75, 0.001 * kOneSided);
 }
 
 TEST(PredictContact, GivesTheValuesOfItsExactCounterparts) {
   const ExactContact truth = Truth();
-  const PredictedContact contact = PredictContact(KnowBodies(), kFriction);
+  const PredictedContact contact = PredictContact(KnowBodies());
   EXPECT_EQ(*contact.effective_modulus, truth.effective_modulus);
   EXPECT_EQ(*contact.equivalent_radius, truth.equivalent_radius);
   EXPECT_EQ(contact.tangential_compliance, truth.tangential_compliance);
@@ -288,24 +286,28 @@ TEST(PredictContact, GivesTheValuesOfItsExactCounterparts) {
 TEST(PredictContact, RefusesWhatDoesNotDescribeAContactOrDoesSoTwice) {
   KnownContact unloaded = KnowBodies();
   unloaded.normal_load = 0.0;
-  EXPECT_EQ(MessageOf([&] { PredictContact(unloaded, kFriction); }),
+  EXPECT_EQ(MessageOf([&] { PredictContact(unloaded); }),
             "normal load [N] = 0 is invalid: must be finite and > 0");
-  EXPECT_EQ(MessageOf([] { PredictContact(KnowBodies(), -0.4); }),
+  KnownContact pulled = KnowBodies();
+  pulled.friction_coefficient = -0.4;
+  EXPECT_EQ(MessageOf([&] { PredictContact(pulled); }),
             "friction [-] = -0.4 is invalid: must be finite and > 0");
   const KnownBody plane{.youngs_modulus = 1e9, .poisson_ratio = 0.3, .radius = kInfinity};
   const KnownContact planes{.normal_load = 1.0, .body_1 = plane, .body_2 = plane};
-  EXPECT_THAT(MessageOf([&] { PredictContact(planes, kFriction); }), HasSubstr("two planes"));
+  EXPECT_THAT(MessageOf([&] { PredictContact(planes); }), HasSubstr("two planes"));
   const std::string rule =
-      "contact: must be given by its normal load and either contact radius and tangential "
-      "compliance or E, ν and R of both bodies";
+      "a contact needs --friction, --normal-load and either --contact-radius with --compliance or "
+      "--youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2";
   KnownContact twice = KnowBodies();
   twice.contact_radius = 1e-3;
   twice.tangential_compliance = 4e-11;
-  EXPECT_EQ(MessageOf([&] { PredictContact(twice, kFriction); }), rule);
-  EXPECT_EQ(MessageOf([] { PredictContact({.normal_load = 1.0}, kFriction); }), rule);
-  EXPECT_EQ(MessageOf([] {
-              PredictContact(KnowBodies(), {0.3, -0.1});
-            }),
+  EXPECT_EQ(MessageOf<InputError>([&] { PredictContact(twice); }), rule);
+  EXPECT_EQ(MessageOf<InputError>([] { PredictContact({.normal_load = 1.0}); }), rule);
+  KnownContact frictionless = KnowBodies();
+  frictionless.friction_coefficient.reset();
+  EXPECT_EQ(MessageOf<InputError>([&] { PredictContact(frictionless); }), rule);
+  pulled.friction_coefficient = UncertainValue(0.3, -0.1);
+  EXPECT_EQ(MessageOf([&] { PredictContact(pulled); }),
             "standard uncertainty of the friction [-] = -0.1 is invalid: must be finite and >= 0");
 }
 

@@ -34,7 +34,7 @@ const loop::PreparationOptions kPreparation{.cycles = loop::CountRange{.first = 
 const loop::Record kRecord{.displacement = {0.0, 1.0}, .force = {0.0, 1.0}};
 const models::ContactStateOptions kState{.unloaded_displacement = 1e-6};
 const models::ExcitationOptions kExcitation{.cycles = 2.0};
-const request::ContactOptions kContactOptions{.friction_coefficient = {}};
+const request::ContactOptions kContactOptions{.normal_loads = {}};
 const request::FitRequest kRequest{.files = {"loop.csv"}};
 const request::LawRequest kLaw{.slip_force = 15.0};
 

@@ -47,7 +47,8 @@ struct KnownBody {
 /// Holds the known properties of the contact, in addition to the fit. The uncertainties are
 /// independent of each other and of the fit's.
 struct KnownContact {
-  std::optional<UncertainValue> normal_load = std::nullopt;  ///< N [N], finite, > 0
+  std::optional<UncertainValue> friction_coefficient = std::nullopt;  ///< μ [-], finite, > 0
+  std::optional<UncertainValue> normal_load = std::nullopt;           ///< N [N], finite, > 0
   KnownBody body_1{};
   KnownBody body_2{};
   /// a [m], measured otherwise, finite, > 0
@@ -74,11 +75,10 @@ struct PredictedContact {
 
 /// Applies Hertz, Mindlin and the mapping; values as the functions of hertz.h and
 /// MapMindlinToDahl() give them, errors as of IdentifyContact().
-/// @param known  N, and either a and G* alone or E, ν and R of both bodies
-/// @param friction_coefficient  μ [-], finite, > 0
-/// @throws InvalidArgument naming what is missing, or the parameter, its value and the rule
-PredictedContact PredictContact(const KnownContact& known,
-                                const UncertainValue& friction_coefficient);
+/// @param known  μ, N, and either a and G* alone or E, ν and R of both bodies
+/// @throws InputError naming the options that give these, where they are not given
+/// @throws InvalidArgument naming the parameter, its value and the rule
+PredictedContact PredictContact(const KnownContact& known);
 
 /// Returns G* [1/Pa]: the given one, else that of both bodies' E and ν; empty where neither is
 /// known.

@@ -16,7 +16,6 @@ struct ContactOptions {
   contact::KnownContact known{};
   /// Loads as given, one or one a file; known.normal_load is their mean.
   std::vector<contact::UncertainValue> normal_loads{};
-  std::optional<contact::UncertainValue> friction_coefficient{};
 };
 
 /// Sets the normal loads [N], one for all records or one a record: their mean is what is known of
@@ -31,12 +30,6 @@ bool IsAnythingGiven(const ContactOptions& options);
 /// @throws InvalidArgument naming the option, its value and the rule, InputError where there are
 ///   other loads than one for all or one a record
 void Validate(const ContactOptions& options, std::size_t records = 1);
-
-/// Predicts a contact that is described by friction and normal load with either contact radius and
-/// compliance or the materials and radii of both bodies; uncertain inputs make uncertain
-/// quantities.
-/// @throws InputError naming the options that are needed
-contact::PredictedContact ResolveContact(const ContactOptions& options);
 
 /// A branch law: by its parameters, or by a contact.
 struct LawRequest {
