@@ -15,6 +15,9 @@ namespace mindahl::contact {
 //
 // G* here is a COMPLIANCE [1/Pa], as in Peyret et al. (2017). Many texts write G* for its inverse,
 // an effective shear modulus [Pa]. Steel on steel has G* ≈ 4.2e-11 1/Pa.
+//
+// Parameters are finite and, but for the displacement δ [m], > 0; InvalidArgument names the one
+// that is not, its value and the rule, or the result that is beyond the normal doubles.
 
 /// All that the tangential law needs of a contact.
 struct MindlinContact {
@@ -36,20 +39,12 @@ void Validate(const MindlinContact& contact);
 double TangentialCompliance(const Body& body_1, const Body& body_2);
 
 /// Returns the force Tc [N] at which the whole contact slips.
-///   Tc = μN
-/// @param friction_coefficient  μ [-], finite, > 0
-/// @param normal_load           N [N], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule; also for a result beyond
-///   the normal doubles
+///   Tc = μN, of μ [-] and N [N]
 /// Relative error < 1 ε.
 double GrossSlipForce(double friction_coefficient, double normal_load);
 
-/// Stiffness σ [N/m] of the contact before any slip.
-///   σ = 8a/G*
-/// @param contact_radius         a [m], finite, > 0
-/// @param tangential_compliance  G* [1/Pa], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule; also for a result beyond
-///   the normal doubles
+/// Returns the stiffness σ [N/m] of the contact before any slip.
+///   σ = 8a/G*, of a [m] and G* [1/Pa]
 /// Relative error < 1 ε.
 double MindlinTangentialStiffness(double contact_radius, double tangential_compliance);
 
@@ -62,8 +57,6 @@ double GrossSlipDisplacement(const MindlinContact& contact);
 /// Returns the force T₀ [N] on the virgin curve, odd in δ; ±Tc beyond ±δc.
 ///   T₀ = Tc·[1 − z√z] = Tc·w(1 + z + z²)/(1 + z√z),  w = δ/δc,  z = 1 − w
 /// Eq. 13 of the paper.
-/// @param displacement  δ [m], finite
-/// @throws InvalidArgument naming the parameter, its value and the rule
 /// Relative error < 6 ulp for every δ: the second form, used here, does not cancel as δ → 0.
 double MindlinVirginForce(const MindlinContact& contact, double displacement);
 
@@ -73,7 +66,6 @@ double MindlinVirginForce(const MindlinContact& contact, double displacement);
 /// the loop in gross slip, and does not lose the digits of δ* that T* near Tc no longer carries.
 /// @param displacement            δ [m], |δ| <= δ*
 /// @param displacement_amplitude  δ* [m], finite, >= 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
 /// Absolute error < 18 ulp of T₀(δ*).
 double MindlinUnloadingForce(const MindlinContact& contact, double displacement,
                              double displacement_amplitude);

@@ -8,6 +8,9 @@ namespace mindahl::contact {
 // under the pressure p(r) = p₀·√(1 − r²/a²). It holds while a is small against the radii, the
 // surfaces are smooth and do not adhere, and both materials stay elastic.
 //
+// Loads N [N], radii a and ρ [m] and moduli E* [Pa] are finite and > 0; InvalidArgument names the
+// one that is not, its value and the rule.
+//
 // The functions work in long double and round once: where it has 64 bits their relative error is
 // below 1 ε = 2.2e-16. A result beyond the normal doubles is refused.
 
@@ -36,35 +39,23 @@ double EffectiveModulus(const Body& body_1, const Body& body_2);
 /// Johnson (1985) §4.2. A plane has an infinite radius, a concave seat a negative one.
 /// @param radius_1, radius_2  [m], not 0, infinite for a plane; 1/R₁ + 1/R₂ > 0
 /// @throws InvalidArgument on a radius that is 0 or not a number, and where the relative curvature
-/// is
-///   not positive: two planes, or a seat no wider than what sits in it
+///   is not positive: two planes, or a seat no wider than what sits in it
 /// Relative error < 2 ulp, also for R₁ ≈ −R₂: the sum R₁ + R₂ is then exact.
 double EquivalentRadius(double radius_1, double radius_2);
 
-/// Radius a [m] of the contact circle.
+/// Returns the radius a [m] of the contact circle.
 ///   a = ∛(3Nρ/(4E*))
 /// Johnson (1985) eq. 4.22.
-/// @param normal_load        N [N], finite, > 0
-/// @param equivalent_radius  ρ [m], finite, > 0
-/// @param effective_modulus  E* [Pa], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzContactRadius(double normal_load, double equivalent_radius, double effective_modulus);
 
 /// Returns the equivalent radius ρ [m] under which the load makes a circle of the given radius.
 ///   ρ = 4E*a³/(3N)
 /// The inverse of HertzContactRadius in ρ; a relative error of a counts three times.
-/// @param normal_load        N [N], finite, > 0
-/// @param contact_radius     a [m], finite, > 0
-/// @param effective_modulus  E* [Pa], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus);
 
 /// Returns the pressure p₀ [Pa] at the centre of the contact circle, 3/2 of the mean.
 ///   p₀ = 3N/(2πa²)
 /// Johnson (1985) eq. 4.24.
-/// @param normal_load     N [N], finite, > 0
-/// @param contact_radius  a [m], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzMaximumPressure(double normal_load, double contact_radius);
 
 }  // namespace mindahl::contact
