@@ -42,21 +42,8 @@ struct CsvTable {
   [[nodiscard]] std::string Header() const;
 };
 
-/// How the rows of a text are read.
-///
-/// *Delimiter and decimal mark.* Tab, semicolon, comma or runs of blanks, and a point or a comma
-/// that is not the delimiter: those under which the first 1000 rows hold the most numbers less
-/// broken numbers ("5;2", "12:30"), in that order on a tie. Cells may be quoted (RFC 4180) within a
-/// line, a trailing delimiter is no cell.
-///
-/// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
-/// meant to be numbers, one of them a number: "sample_rate,200" has none. The data begin at the
-/// first row with as many cells as most such rows and no text in a column of numbers. Text below is
-/// an error, unless it repeats the header; blank lines and comments, which begin with '#', are not.
-///
-/// *Header.* Of the rows of text above the data one with two words that are known, or the last, has
-/// the names, and one where at least half of the cells are symbols of units has these; other rows
-/// are skipped. A file whose first row is data has the header of a last comment above it, or none.
+/// How the rows of a text are read. Delimiter and decimal mark are those under which the first 1000
+/// rows hold the most numbers less broken numbers ("5;2", "12:30").
 struct Layout {
   char delimiter = ',', decimal_mark = '.';
   std::vector<bool> is_wanted = {};            // of each column; found: it holds some numbers

@@ -75,18 +75,11 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// compressed by gzip; "-" is standard input, and ./- a file of that name. docs/input.md says what
 /// it may look like.
 ///
-/// *Columns.* As given; else by evidence: the words of the name (src/io/words.h), the unit, which
-/// counts more, and whether the numbers go to and fro, which counts most; what none of these
-/// decides is taken from the columns that are left, if they are as many, with a note. Refused are
-/// several columns with the same evidence, and evidence that contradicts the role.
+/// Columns that are not given are found by evidence: the words of the name, the unit, which counts
+/// more, and whether the numbers go to and fro, which counts most; what none of these decides is
+/// taken from the columns that are left, if they are as many, with a note.
 ///
-/// *Units.* As given; else of the header; else m, N, s, with a note. Stamps and times of day count
-/// from the first row.
-///
-/// *Rows* without a number in a column that is used are left out, with a note; more than one in a
-/// hundred are an error, unless broken rows are skipped.
-///
-/// *Covariates.* Those chosen; then up to kMostOtherColumns of the others that hold a number in
+/// Covariates are those chosen; then up to kMostOtherColumns of the others that hold a number in
 /// every row, not the same in all, called by their name without its unit, or else by number.
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
