@@ -22,7 +22,6 @@ struct SimulateOptions {
   std::string model = "mindlin";
   LawOptions law;
   models::ExcitationOptions excitation{.cycles = 1.0};
-  std::string waveform = "sine";
   std::optional<double> lambda;
   std::optional<double> amplitude;
   std::string path;                 // a file with the motion, instead
@@ -46,7 +45,6 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     return motion;
   }
   models::ExcitationOptions excitation = options.excitation;
-  excitation.waveform = *models::FindWaveform(options.waveform);
   if (options.lambda.has_value() == options.amplitude.has_value()) {
     Refuse("--lambda or --amplitude, one of the two, must be given (or --path)");
   }
@@ -92,9 +90,11 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
 
 void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   const OptionGroup group(command, "Excitation");
-  const auto waveforms = models::WaveformNames();
-  group.AddWord("--waveform", request.waveform, {waveforms.begin(), waveforms.end()},
-                "imposed displacement");
+  group.AddChoice("--waveform", request.excitation.waveform,
+                  {{"sine", models::Waveform::kSine},
+                   {"triangle", models::Waveform::kTriangle},
+                   {"growing-sine", models::Waveform::kGrowingSine}},
+                  "imposed displacement");
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
   group.AddQuantity("--amplitude", request.amplitude, "amplitude [m]", "M", "m");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");

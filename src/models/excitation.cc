@@ -1,7 +1,6 @@
 #include "mindahl/models/excitation.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <cmath>
 
@@ -9,9 +8,6 @@
 
 namespace mindahl::models {
 namespace {
-
-// In the order of Waveform.
-constexpr std::array<std::string_view, 3> kNames = {"sine", "triangle", "growing-sine"};
 
 /// Returns the wave in units of the amplitude, at `phase` in [0, 1).
 double UnitWave(Waveform waveform, double phase) {
@@ -39,14 +35,6 @@ void RequireExcitation(const ExcitationOptions& options) {
 }
 
 }  // namespace
-
-std::span<const std::string_view> WaveformNames() { return kNames; }
-
-std::optional<Waveform> FindWaveform(std::string_view name) {
-  const auto found = std::ranges::find(kNames, name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Waveform>(found - kNames.begin());
-}
 
 Excitation MakeExcitation(const ExcitationOptions& options) {
   RequireExcitation(options);

@@ -45,15 +45,6 @@ TEST(Excitation, GrowingSineGrowsByTheFactorAsked) {
   EXPECT_EQ(growing.displacement[325], growing.envelope[325]);
 }
 
-TEST(Excitation, NamesAreThoseOfTheCommandLine) {
-  EXPECT_EQ(FindWaveform("sine"), Waveform::kSine);
-  EXPECT_EQ(FindWaveform("triangle"), Waveform::kTriangle);
-  EXPECT_EQ(FindWaveform("growing-sine"), Waveform::kGrowingSine);
-  EXPECT_FALSE(FindWaveform("square").has_value());
-  EXPECT_FALSE(FindWaveform("").has_value());
-  EXPECT_EQ(WaveformNames().size(), 3U);
-}
-
 TEST(Excitation, RejectsValuesOutOfRange) {
   EXPECT_THROW(MakeExcitation({.amplitude = 0.0}), InvalidArgument);
   EXPECT_THROW(MakeExcitation({.amplitude = std::nan("")}), InvalidArgument);

@@ -1,20 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
-#include <span>
-#include <string_view>
 #include <vector>
 
 namespace mindahl::models {
 
 enum class Waveform { kSine, kTriangle, kGrowingSine };
-
-/// Returns "sine", "triangle", "growing-sine": in the order of Waveform.
-std::span<const std::string_view> WaveformNames();
-
-/// Returns the waveform of one of these names; empty for any other.
-std::optional<Waveform> FindWaveform(std::string_view name);
 
 struct ExcitationOptions {
   Waveform waveform = Waveform::kSine;
