@@ -198,7 +198,7 @@ double UsualStepOf(Readings values) {
 /// A column, what is wrong in it, and the column with lines over that; both empty where nothing is.
 struct Repaired {
   Readings read;
-  std::vector<bool> glitches{};
+  std::set<std::size_t> glitches{};
   std::vector<double> interpolated{};
   std::optional<double> usual_step{};  // of the column as it was when it was first asked for
 
@@ -214,7 +214,6 @@ struct Repaired {
 
 /// Draws a line between the samples about [begin, end), which are inside the record.
 void LeaveOut(std::size_t begin, std::size_t end, Repaired& channel) {
-  channel.glitches.resize(channel.read.size());
   if (channel.interpolated.empty()) {
     channel.interpolated.assign(channel.read.begin(), channel.read.end());
   }
@@ -222,7 +221,7 @@ void LeaveOut(std::size_t begin, std::size_t end, Repaired& channel) {
   const double first = values[begin - 1];
   const double slope = (values[end] - first) / static_cast<double>(end - begin + 1);
   for (std::size_t i = begin; i < end; ++i) {
-    channel.glitches[i] = true;
+    channel.glitches.insert(i);
     values[i] = first + slope * static_cast<double>(i - begin + 1);
   }
 }
@@ -315,19 +314,15 @@ Interpolated FindAndInterpolate(const RecordView& record) {
     Repaired channel{.read = values};
     for (const Run& run : dropouts) LeaveOut(run.begin, run.end, channel);
     for (int pass = 0; pass < kPasses && FindSpikes(channel); ++pass) continue;
-    const auto count = static_cast<double>(std::ranges::count(channel.glitches, true));
+    const auto count = static_cast<double>(channel.glitches.size());
     const double most = kMost * static_cast<double>(values.size());
     return count > most ? Repaired{.read = values} : channel;
   };
   Repaired displacement = interpolated(record.displacement);
   Repaired force = interpolated(record.force);
-  Interpolated result{std::move(displacement.glitches), std::move(displacement.interpolated),
-                      std::move(force.interpolated)};
-  result.glitches.resize(std::max(result.glitches.size(), force.glitches.size()));
-  for (std::size_t i = 0; i < force.glitches.size(); ++i) {
-    if (force.glitches[i]) result.glitches[i] = true;
-  }
-  return result;
+  displacement.glitches.merge(force.glitches);
+  return {std::move(displacement.glitches), std::move(displacement.interpolated),
+          std::move(force.interpolated)};
 }
 
 }  // namespace mindahl::loop

@@ -49,11 +49,8 @@ void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
   Interpolated interpolated = FindAndInterpolate(prepared.record);
-  for (std::size_t i = 0; i < interpolated.glitches.size(); ++i) {
-    if (!interpolated.glitches[i]) continue;
-    prepared.counts[i] = 0;
-    prepared.glitches.push_back(i);
-  }
+  prepared.glitches.assign(interpolated.glitches.begin(), interpolated.glitches.end());
+  for (const std::size_t i : prepared.glitches) prepared.counts[i] = 0;
   prepared.interpolated_displacement = std::move(interpolated.displacement);
   prepared.interpolated_force = std::move(interpolated.force);
 }

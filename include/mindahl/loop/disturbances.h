@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -51,7 +52,7 @@ std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
 /// A record without its glitches: lines over the samples that are left out. All empty where there
 /// is no glitch; a channel is also empty where there is none in it.
 struct Interpolated {
-  std::vector<bool> glitches;        ///< one a sample
+  std::set<std::size_t> glitches;    ///< samples
   std::vector<double> displacement;  ///< [m]
   std::vector<double> force;         ///< [N]
 };
