@@ -17,19 +17,20 @@ namespace mindahl::loop {
 
 namespace {
 
-/// Returns the least distance [m] between neighbours that differ; 0 where none do.
-double SmallestStep(std::span<const double> displacement) {
-  double smallest = 0.0;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    const double step = std::abs(displacement[i] - displacement[i - 1]);
-    if (step > 0 && !(step >= smallest && smallest > 0)) smallest = step;
+/// Returns the distances between neighbours that differ.
+std::vector<double> StepsOf(std::span<const double> values) {
+  std::vector<double> steps;
+  steps.reserve(values.size());
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > 0) steps.push_back(step);
   }
-  return smallest;
+  return steps;
 }
 
-/// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
-/// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive
-/// that goes on has no fixed number of samples.
+/// True if most neighbours differ by whole steps or not at all, and a rest between two steps has
+/// not always as many samples. An evenly sampled drive also gives whole steps; it is told from an
+/// encoder by its constant number of samples per step.
 bool IsQuantised(std::span<const double> displacement, double step, bool rests_at_turns) {
   constexpr double kWhole = 1e-6;
   constexpr double kMostBroken = 0.01;  // of the pairs
@@ -110,8 +111,10 @@ std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise
 }  // namespace
 
 double EncoderStep(std::span<const double> readings, bool rests_at_turns) {
-  const double step = SmallestStep(readings);
-  return step > 0 && IsQuantised(readings, step, rests_at_turns) ? step : 0.0;
+  const std::vector<double> steps = StepsOf(readings);
+  if (steps.empty()) return 0.0;
+  const double step = std::ranges::min(steps);
+  return IsQuantised(readings, step, rests_at_turns) ? step : 0.0;
 }
 
 double EstimateDisplacementNoise(std::span<const double> displacement) {
@@ -182,12 +185,7 @@ constexpr double kMost = 0.25;
 /// exceed; 0 where all are zero.
 double UsualStepOf(Readings values) {
   constexpr double kUsualShare = 0.9;
-  std::vector<double> steps;
-  steps.reserve(values.size());
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double step = std::abs(values[i] - values[i - 1]);
-    if (step > 0) steps.push_back(step);
-  }
+  std::vector<double> steps = StepsOf(values);
   if (steps.empty()) return 0.0;
   const auto at = steps.begin() +
                   static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(steps.size() - 1));

@@ -18,8 +18,8 @@ double EstimateDisplacementNoise(std::span<const double> displacement);
 
 /// Returns the step [m] of the encoder that a displacement was read from: neighbours differ by
 /// whole steps or not at all. 0 where it was not.
-/// @param rests_at_turns  does a rest where the readings turn say so? Of a force, which rests where
-///                        the contact slips, but not of a drive, which may dwell
+/// @param rests_at_turns  rests at turning points also count: those of a force, which rests where
+///                        the contact slips, not those of a drive, which may dwell there
 double EncoderStep(std::span<const double> readings, bool rests_at_turns = false);
 
 /// Returns how far the windows reach, h samples to either side of each sample, over which a
