@@ -69,10 +69,7 @@ class OpenBranches {
 
   /// Starts the branch back from `extreme` on the present one.
   void Reverse(double extreme) {
-    const Branch& present = path_.branches[static_cast<std::size_t>(open_.back())];
-    Open({.origin = extreme,
-          .amplitude = present.amplitude,
-          .direction = static_cast<std::int8_t>(-direction_)});
+    Open({.origin = extreme, .direction = static_cast<std::int8_t>(-direction_)});
   }
 
   /// Returns how many of the samples ahead the present branch has before it closes.
@@ -127,22 +124,21 @@ void AppendToRuns(std::vector<BranchRun>& runs, std::size_t begin, std::size_t e
 void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
                          std::span<const Turn> turns, Memory memory,
                          const InitialContact& initial) {
+  const std::int8_t direction = FirstDirection(displacement, turns);
+  if (initial.state == InitialState::kVirgin) {
+    const double origin = initial.unloaded_displacement;
+    const double first_step = displacement.front() - origin;
+    const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
+    open.OpenVirgin(
+        {.origin = origin, .start = BranchStart::kUnloaded, .direction = first_direction});
+    if (first_direction != direction) open.Reverse(displacement.front());
+    return;
+  }
   auto [lowest, highest] = ExtremesOf(displacement);
   for (const Turn& turn : turns) {
     lowest = std::min(lowest, turn.displacement);
     highest = std::max(highest, turn.displacement);
   }
-  const std::int8_t direction = FirstDirection(displacement, turns);
-  if (initial.state == InitialState::kVirgin) {
-    const double origin = initial.unloaded_displacement;
-    const double amplitude = std::max(highest - origin, origin - lowest);
-    const double first_step = displacement.front() - origin;
-    const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
-    open.OpenVirgin({origin, amplitude, -1, BranchStart::kUnloaded, first_direction});
-    if (first_direction != direction) open.Reverse(displacement.front());
-    return;
-  }
-  const double centre = lowest + (highest - lowest) / 2;
   const double amplitude = (highest - lowest) / 2;
   const double near_extreme = direction > 0 ? lowest : highest;
   if (memory == Memory::kNone) {
@@ -150,7 +146,8 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
     return;
   }
   // One turn of the loop from the unloaded contact: a Masing law is steady after it.
-  open.Open({centre, amplitude, -1, BranchStart::kSteadyCentre, direction});
+  open.Open(
+      {.origin = lowest + amplitude, .start = BranchStart::kSteadyCentre, .direction = direction});
   open.Reverse(direction > 0 ? highest : lowest);
   open.Reverse(near_extreme);
 }

@@ -143,12 +143,12 @@ TEST(LoadingPath, ASteadyContactStartsInsideItsLoop) {
   EXPECT_EQ(path.branches[static_cast<std::size_t>(first.parent)].origin, 1.0);
   EXPECT_EQ(path.branches[0].start, BranchStart::kSteadyCentre);
   EXPECT_EQ(path.branches[0].origin, -1.0);
-  EXPECT_EQ(path.branches[0].amplitude, 2.0);
 }
 
 TEST(LoadingPath, ASteadyContactWithoutMemoryStartsAtAnExtremeOfItsLoop) {
   const LoadingPath path = MemorylessPath({0, -3, 1, 0}, {.state = InitialState::kSteady});
   EXPECT_EQ(path.branches[0].start, BranchStart::kSteadyExtreme);
+  EXPECT_EQ(path.branches[0].amplitude, 2.0);
   EXPECT_EQ(path.branches[0].origin, 1.0);
   EXPECT_EQ(path.branches[0].direction, -1.0);
 }

@@ -32,7 +32,7 @@ enum class BranchStart : std::uint8_t {
 /// One branch of the response: T(δ) = T₀ + s·(branch law of |δ − origin|).
 struct Branch {
   double origin = 0.0;       ///< [m]
-  double amplitude = 0.0;    ///< X [m] of the excitation, of the steady loop before it
+  double amplitude = 0.0;    ///< X [m] of the steady loop before it; of kSteadyExtreme alone
   std::int32_t parent = -1;  ///< branch on which the origin lies; −1 unless start is kReversal
   BranchStart start = BranchStart::kReversal;
   std::int8_t direction = 1;  ///< s = ±1; on the virgin curve, which is run both ways, the first
