@@ -102,7 +102,10 @@ class Differentiation {
     result.force = origin_gradient;
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) return result;
-    AddRemaining(scale, branch, result);
+    // What the force at the origin changes of height and rate.
+    const Gradient remaining = scale.remaining_per_force * branch.direction * origin_gradient;
+    result.height += scale.span * remaining;
+    result.log_rate += (shape_.shape_exponent - 1) * remaining / scale.remaining;
     result.log_rate[kShape] += std::log(scale.remaining);
     if (branch.start != BranchStart::kUnloaded) return result;
     result.origin_per_unloaded = 1.0;
@@ -112,14 +115,6 @@ class Differentiation {
     result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
     result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);
     return result;
-  }
-
-  /// Adds what the force at the origin changes of height and rate.
-  void AddRemaining(const BranchScale& scale, const Branch& branch, BranchGradient& to) const {
-    if (scale.remaining <= 0) return;
-    const Gradient remaining = scale.remaining_per_force * branch.direction * to.force;
-    to.height += scale.span * remaining;
-    to.log_rate += (shape_.shape_exponent - 1) * remaining / scale.remaining;
   }
 
   const BranchScaling& scaling_;
