@@ -64,29 +64,25 @@ void RequireLawUnderLoad(const NormalizedLaw& law, const LoadedHistory& history,
 
 /// Takes the nearest values that never fall, or never grow, from begin to end.
 void MakeMonotone(std::span<double> values, bool grows) {
-  std::vector<double> means;
-  std::vector<double> counts;
+  struct Pool {
+    double mean;
+    double count;
+  };
+  std::vector<Pool> pools;
   for (const double value : values) {
-    means.push_back(value);
-    counts.push_back(1.0);
-    while (means.size() > 1) {
-      const double last = means.back();
-      double& before = means[means.size() - 2];
-      if (grows ? last >= before : last <= before) break;
-      double& count = counts[counts.size() - 2];
-      before += (last - before) * (counts.back() / (count + counts.back()));
-      count += counts.back();
-      means.pop_back();
-      counts.pop_back();
+    Pool last{value, 1.0};
+    while (!pools.empty()) {
+      const Pool& before = pools.back();
+      if (grows ? last.mean >= before.mean : last.mean <= before.mean) break;
+      const double count = before.count + last.count;
+      last = {before.mean + (last.mean - before.mean) * (last.count / count), count};
+      pools.pop_back();
     }
+    pools.push_back(last);
   }
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < means.size(); ++k) {
-    const auto end = i + static_cast<std::size_t>(counts[k]);
-    // A single value keeps its last digit.
-    for (; i < end; ++i) {
-      if (counts[k] > 1) values[i] = means[k];
-    }
+  auto value = values.begin();
+  for (const auto& [mean, count] : pools) {
+    value = std::fill_n(value, static_cast<std::size_t>(count), mean);
   }
 }
 
