@@ -168,11 +168,11 @@ TestPart FindTestPart(const RecordView& record) {
   LeaveOutLoadRamps(part);
   LeaveOutTravels(part);
   LeaveOutRests(part);
-  TestPart test{.first = part.points.front(), .last = part.points.back() + 1};
-  if (!part.before.empty()) test.left_out.push_back({part.before, 0, test.first});
-  if (!part.after.empty()) test.left_out.push_back({part.after, test.last, record.size()});
-  test.begins_cycled = !part.before.empty() && part.before != "rest";
-  return test;
+  return {.first = part.points.front(),
+          .last = part.points.back() + 1,
+          .before = part.before,
+          .after = part.after,
+          .begins_cycled = !part.before.empty() && part.before != "rest"};
 }
 
 }  // namespace mindahl::loop

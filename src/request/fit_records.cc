@@ -82,13 +82,16 @@ void KeepTests(const FitRequest& request, FitOptions& options, report::ReportInp
   bool all_cycled = true;
   for (RecordFile& record : input.records) {
     const loop::TestPart test = loop::FindTestPart(record.record);
-    for (const loop::LeftOut& part : test.left_out) {
+    const auto leave_out = [&](std::string_view reason, std::size_t first, std::size_t last) {
+      if (reason.empty()) return;
       input.left_out.push_back({.file = record.name,
-                                .samples = part.last - part.first,
-                                .first = record.LineOf(part.first),
-                                .last = record.LineOf(part.last - 1),
-                                .why = std::string(part.reason)});
-    }
+                                .samples = last - first,
+                                .first = record.LineOf(first),
+                                .last = record.LineOf(last - 1),
+                                .why = std::string(reason)});
+    };
+    leave_out(test.before, 0, test.first);
+    leave_out(test.after, test.last, record.record.size());
     io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }

@@ -2,24 +2,18 @@
 
 #include <cstddef>
 #include <string_view>
-#include <vector>
 
 #include "mindahl/loop/record.h"
 
 namespace mindahl::loop {
 
-/// Successive samples [first, last) at an end of a record that are not part of its test.
-struct LeftOut {
-  std::string_view reason;  ///< "load ramp", "travel" or "rest": the first that applies
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
-
 /// Locates the test in a record: samples [first, last).
 struct TestPart {
   std::size_t first = 0;
   std::size_t last = 0;
-  std::vector<LeftOut> left_out{};  ///< in order of time, at most one at each end
+  /// Why the samples before and after it are left out: "load ramp", "travel" or "rest", the first
+  /// that applies; empty where none are.
+  std::string_view before{}, after{};
   /// True if motion before `first` was left out: the contact was cycled before the test.
   bool begins_cycled = false;
 };
