@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <array>
 #include <boost/algorithm/string/replace.hpp>
 #include <cstdint>
 #include <optional>
@@ -69,19 +70,18 @@ py::dict CovariatesOf(const py::object& self) {
   return columns;
 }
 
-py::dict DictOf(const io::ChosenColumn& column) {
-  return py::dict("name"_a = column.name, "index"_a = column.index, "unit"_a = column.unit);
-}
-
-io::ChosenColumn ColumnOf(const py::handle& column) {
-  return {column["name"].cast<std::string>(), column["index"].cast<std::size_t>(),
-          column["unit"].cast<std::string>()};
-}
+constexpr std::array kRoles = {
+    std::pair("displacement", &RecordFile::displacement), std::pair("force", &RecordFile::force),
+    std::pair("time", &RecordFile::time), std::pair("normal_load", &RecordFile::normal_load)};
 
 py::dict ColumnsUsed(const RecordFile& file) {
-  py::dict columns("displacement"_a = DictOf(file.displacement), "force"_a = DictOf(file.force));
-  if (file.time) columns["time"] = DictOf(file.time);
-  if (file.normal_load) columns["normal_load"] = DictOf(file.normal_load);
+  py::dict columns;
+  for (const auto& [role, member] : kRoles) {
+    const io::ChosenColumn& column = file.*member;
+    if (!column) continue;
+    columns[role] =
+        py::dict("name"_a = column.name, "index"_a = column.index, "unit"_a = column.unit);
+  }
   return columns;
 }
 
@@ -102,7 +102,12 @@ py::tuple PickledRecord(const RecordFile& file) {
   for (const loop::Covariate& other : file.record.covariates) {
     others.append(py::make_tuple(other.name, other.unit, CopyOf(other.values)));
   }
-  return py::make_tuple(file.name, file.is_torsional, values, others, ColumnsUsed(file), file.lines,
+  py::list columns;
+  for (const auto& [role, member] : kRoles) {
+    const io::ChosenColumn& column = file.*member;
+    columns.append(py::make_tuple(column.name, column.index, column.unit, column.has_no_unit));
+  }
+  return py::make_tuple(file.name, file.is_torsional, values, others, columns, file.lines,
                         file.notes);
 }
 
@@ -118,11 +123,13 @@ RecordFile UnpickledRecord(const py::tuple& state) {
         other.cast<std::tuple<std::string, std::string, py::object>>();
     file.record.covariates.push_back({name, unit, ValuesOf(values)});
   }
-  const auto columns = state[4].cast<py::dict>();
-  file.displacement = ColumnOf(columns["displacement"]);
-  file.force = ColumnOf(columns["force"]);
-  if (columns.contains("time")) file.time = ColumnOf(columns["time"]);
-  if (columns.contains("normal_load")) file.normal_load = ColumnOf(columns["normal_load"]);
+  for (std::size_t k = 0; k < kRoles.size(); ++k) {
+    const auto [name, index, unit, has_no_unit] =
+        state[4]
+            .cast<py::list>()[k]
+            .cast<std::tuple<std::string, std::size_t, std::string, bool>>();
+    file.*kRoles[k].second = {name, index, unit, has_no_unit};
+  }
   file.lines = state[5].cast<std::vector<std::size_t>>();
   file.notes = state[6].cast<std::vector<std::string>>();
   return file;

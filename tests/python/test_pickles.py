@@ -89,6 +89,15 @@ def test_a_record_is_copied_with_all_its_columns(tmp_path):
         np.testing.assert_array_equal(other.covariates["temp"], [20, 21, 22, 23])
 
 
+def test_a_copied_record_still_has_columns_without_units(sphere, tmp_path):
+    path = tmp_path / "loop.csv"
+    np.savetxt(path, np.column_stack(sphere[1:]), delimiter=",", header="motion,PULL-N", comments="")
+    record = mindahl.read_csv(path, displacement="1", force="2")
+    text = mindahl.fit(record).text()
+    assert "'motion' (1) in m, force 'PULL-N' (2) in N" in text
+    assert mindahl.fit(pickle.loads(pickle.dumps(record))).text() == text
+
+
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
 def test_tables_and_reports_are_pickled():
     for table in (mindahl.track(SPHERE), mindahl.batch([SPHERE, DATA / "none.csv"])):
