@@ -401,10 +401,6 @@ class FitResult(Told):
             gate=self._kept["reversal_gate"], **own)
         return offset + int(self._kept["force_sign"]) * force
 
-    def summary(self) -> str:
-        """What `mindahl fit` prints, as text()."""
-        return self.text()
-
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""
         if self._fitted is not None:
