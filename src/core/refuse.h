@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +17,18 @@ namespace mindahl {
 template <typename... Parts>
 [[noreturn]] void Refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
   throw InputError(fmt::format(text, std::forward<Parts>(parts)...));
+}
+
+/// Returns `value` rounded to double.
+/// @throws InvalidArgument where it exceeds the largest double
+inline double Representable(std::string_view quantity, long double value) {
+  if (!(std::abs(value) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
+    ThrowInvalid(quantity,
+                 value > 0 ? std::numeric_limits<double>::infinity()
+                           : -std::numeric_limits<double>::infinity(),
+                 "must be within the range of double, 1.8e308: use larger units");
+  }
+  return static_cast<double>(value);
 }
 
 /// Returns "'mindin' is unknown: must be one of dahl, mindlin": of a word that is none of the names

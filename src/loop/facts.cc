@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "core/extremes.h"
+#include "core/refuse.h"
 #include "loop/statistics.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::loop {
 namespace {
@@ -312,11 +311,7 @@ double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last
   for (std::size_t i = first + 1; i <= last; ++i) {
     energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
   }
-  if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
-    ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
-                 "must be within the range of double, 1.8e308: use larger units");
-  }
-  return static_cast<double>(energy);
+  return Representable("energy of a cycle [J]", energy);
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
