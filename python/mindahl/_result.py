@@ -332,7 +332,7 @@ class FitResult(Told):
 
     @property
     def records(self) -> tuple[FittedRecord, ...]:
-        """Each record with its fit; a record whose load goes in steps is one for each load."""
+        """Each record with its fit: one a file or table, in order."""
         return tuple(FittedRecord(**arrays) for arrays in self._kept["records"])
 
     @property

@@ -42,10 +42,9 @@ using request::Strictness;
 
 // --- adding commands and options
 
-/// Adds a command to the program, which runs once it refused what could not be written after the
-/// work: a run with several outputs leaves none behind, takes none for another and none for what it
-/// reads. An option whose value is called PATH or DIR writes there, "-" to standard output; one
-/// called FILE is read.
+/// Adds a command to the program. Before running, it refuses outputs that are not writable, that
+/// name one file twice, or that are also inputs. An option whose value is called PATH or DIR writes
+/// there, "-" to standard output; one called FILE is read.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
 ///                  continues the last begins with blanks
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,

@@ -14,7 +14,7 @@ namespace mindahl {
 /// Keeps what a fit's columns of samples allocate and free, instead of asking the system for it
 /// anew: a tenth of the time of a fit of 10,000 samples.
 void KeepFreedMemory();
-/// Makes a file that may not grow an error of the write.
+/// Ignores SIGXFSZ, so that exceeding the file-size limit is reported as a write error.
 void IgnoreFileSizeSignal();
 int ProcessNumber();
 

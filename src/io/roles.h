@@ -37,7 +37,7 @@ struct Quantity {
   }
 };
 
-/// Returns the column, from 0, that the user calls so.
+/// Returns the 0-based index of the column that `text` names.
 std::size_t ReadCovariate(const std::string& text, const CsvTable& table);
 
 /// Returns the displacement that the user calls so; without a name that of the first column or,

@@ -96,8 +96,8 @@ struct Evolution {
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
-  /// True of fewer than half the cycles that tell most of a quantity: cycles that differ from the
-  /// rest, of which no course of the test is.
+  /// True if fewer than half as many cycles determine this quantity as determine the
+  /// best-determined one; its changes are then not reported.
   bool is_of_few = false;
 };
 

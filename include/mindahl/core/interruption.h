@@ -4,8 +4,8 @@
 
 namespace mindahl {
 
-/// Calls a function twenty times a second, or less often, from the fits of this thread, as long as
-/// the object lives. What the function throws ends the fit, and leaves it as an exception.
+/// While an instance lives, fits on this thread call the function at most 20 times per second; an
+/// exception that it throws aborts the fit and reaches the caller.
 class Interruptible {
  public:
   explicit Interruptible(std::function<void()> ask);

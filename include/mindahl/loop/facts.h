@@ -14,8 +14,8 @@ namespace mindahl::loop {
 struct CycleFacts {
   std::size_t start = 0;   ///< sample of its first turning point
   double amplitude = 0.0;  ///< X [m]: a quarter of the travel of its two strokes
-  /// T* [N]: half the range of the force: of its means over a twentieth of a stroke, so that noise
-  /// does not make it, and where it turns.
+  /// T* [N]: half the range of the force, over moving means of 1/20 of a stroke (against noise) and
+  /// the values at the turning points.
   double peak_force = 0.0;
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line

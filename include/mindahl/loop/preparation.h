@@ -121,7 +121,8 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Draws the readings of inexact displacements again, 20 to 200 times: the effect of their errors.
+/// Generates 20 to 200 synthetic realisations of the displacement readings (noise, encoder phase),
+/// to propagate their errors through a fit.
 ///
 /// An error of a turning point goes along with the whole branch that starts there, one of an
 /// encoder with all turning points at that count, and smoothing ties neighbours together: no

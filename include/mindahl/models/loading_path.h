@@ -74,8 +74,8 @@ struct LoadingPath {
   [[nodiscard]] double limit() const { return 1 + std::abs(asymmetry); }
 };
 
-/// Returns the largest force [Tc] in the direction of a branch: that of the slip forces where it is
-/// the virgin curve's; every other is as high as its law has it.
+/// Returns the limit of the force [Tc]: 1 ± a for the virgin curve of an unloaded contact, by its
+/// direction, and 1 for every other branch.
 [[nodiscard]] inline double VirginLimit(const LoadingPath& path, const Branch& branch) {
   return branch.start == BranchStart::kUnloaded ? 1 + branch.direction * path.asymmetry : 1.0;
 }

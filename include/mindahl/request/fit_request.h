@@ -63,8 +63,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
 std::vector<io::RecordFile> ReadRecords(const FitRequest& request);
 
 /// Fits records together as one contact at Depth::kFull, and reports.
-/// @param records  those of the request's files; one whose normal load goes in steps becomes a
-///   record for each load
+/// @param records  those of the request's files; the fit has one record for each, in their order
 /// @throws InvalidArgument or InputError naming record, line and column, or the option
 report::Report FitRecords(const FitRequest& request, std::vector<io::RecordFile> records);
 
