@@ -115,35 +115,25 @@ SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
           }};
 }
 
-/// Virgin curve of Jenkins elements: a polygon through its corners.
-struct Polygon {
-  explicit Polygon(const IwanElements& elements) : slope(elements.size() + 1), sliding(slope) {
-    for (std::size_t j = 0; j < elements.size(); ++j) {
-      corners.push_back(elements.slip_force[j] / elements.stiffness[j]);
-      sliding[j + 1] = sliding[j] + elements.slip_force[j];
-    }
-    for (std::size_t j = elements.size(); j-- > 0;) slope[j] = slope[j + 1] + elements.stiffness[j];
+/// Returns the force of Jenkins elements on their virgin curve, a polygon.
+double VirginForce(const IwanElements& elements, double displacement) {
+  double force = 0.0;
+  for (std::size_t j = 0; j < elements.size(); ++j) {
+    force += std::min(elements.stiffness[j] * displacement, elements.slip_force[j]);
   }
-
-  [[nodiscard]] double Force(double x) const {
-    const auto slid = std::ranges::lower_bound(corners, x) - corners.begin();
-    return sliding[static_cast<std::size_t>(slid)] + slope[static_cast<std::size_t>(slid)] * x;
-  }
-
-  std::vector<double> corners;  // displacements at which an element slips, ascending
-  std::vector<double> slope;    // [j]: stiffness of the elements that stick while the first j slip
-  std::vector<double> sliding;  // [j]: force of the first j elements while they slip
-};
+  return force;
+}
 
 SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
-  Polygon virgin(elements);
-  SteadyLoop loop{.peak = virgin.Force(amplitude), .energy = 0.0, .corners = {}, .force = {}};
+  SteadyLoop loop{
+      .peak = VirginForce(elements, amplitude), .energy = 0.0, .corners = {}, .force = {}};
   for (std::size_t j = 0; j < elements.size(); ++j) {
-    loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - virgin.corners[j], 0.0);
-    loop.corners.push_back(2 * virgin.corners[j]);
+    const double corner = elements.slip_force[j] / elements.stiffness[j];
+    loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - corner, 0.0);
+    loop.corners.push_back(2 * corner);
   }
-  loop.force = [virgin = std::move(virgin), peak = loop.peak](double distance) {
-    return 2 * virgin.Force(distance / 2) - peak;
+  loop.force = [elements, peak = loop.peak](double distance) {
+    return 2 * VirginForce(elements, distance / 2) - peak;
   };
   return loop;
 }
