@@ -3,22 +3,11 @@
 #include <Eigen/Core>
 
 namespace mindahl {
-namespace {
-
-/// Eigen compares several values at once, which compilers may not of a loop.
-auto ArrayOf(std::span<const double> values) {
-  return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values));
-}
-
-}  // namespace
 
 Extremes ExtremesOf(std::span<const double> values) {
-  return {ArrayOf(values).minCoeff(), ArrayOf(values).maxCoeff()};
-}
-
-bool AreAllWithin(std::span<const double> values, double largest) {
-  // A NaN is the largest, and within nothing.
-  return values.empty() || ArrayOf(values).abs().maxCoeff<Eigen::PropagateNaN>() <= largest;
+  // Eigen compares several values at once, which compilers may not of a loop.
+  const Eigen::Map<const Eigen::ArrayXd> array(values.data(), std::ssize(values));
+  return {array.minCoeff(), array.maxCoeff()};
 }
 
 }  // namespace mindahl

@@ -12,8 +12,4 @@ struct Extremes {
 /// Returns the least and greatest of values that are no NaN, at least one.
 [[nodiscard]] Extremes ExtremesOf(std::span<const double> values);
 
-/// True if all values are finite and within ±largest.
-/// @param largest  finite, >= 0
-[[nodiscard]] bool AreAllWithin(std::span<const double> values, double largest);
-
 }  // namespace mindahl

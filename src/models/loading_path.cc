@@ -17,8 +17,8 @@ void RequireDisplacements(std::span<const double> displacement) {
   if (displacement.empty()) {
     throw InvalidArgument("the displacement history is empty: must have samples");
   }
-  if (AreAllWithin(displacement, kLargestPathDisplacement)) return;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (std::abs(displacement[i]) <= kLargestPathDisplacement) continue;
     RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
   }
 }
