@@ -260,6 +260,15 @@ TEST(MeasureFacts, OfTheMeasuredTribometerAreItsEnergyAndFriction) {
   EXPECT_EQ(facts.cycles.size(), 10U);
 }
 
+TEST(CycleEnergy, BeyondTheRangeOfDoubleIsRefusedWithItsSign) {
+  const auto refusal = [](double force) {
+    const Record record{.displacement = {0, 1e200, 0}, .force = {0, 0, force}};
+    return MessageOf([&] { CycleEnergy(record, 0, 2); });
+  };
+  EXPECT_THAT(refusal(1e200), StartsWith("energy of a cycle [J] = -inf is invalid"));
+  EXPECT_THAT(refusal(-1e200), StartsWith("energy of a cycle [J] = inf is invalid"));
+}
+
 TEST(MeasureFacts, PeakForceTakesTheMeanOfTheTwoEndsOfACycle) {
   // Up and down in 60 samples each: the force follows the displacement to ±10 but for the last
   // turn, −20 in one sample. Of means over three samples the least is −40/3, of the two ends −15.
