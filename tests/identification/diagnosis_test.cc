@@ -117,6 +117,13 @@ TEST(ForceAtLimit, IsOfASensorThatSaturatesAndNotOfAPlateau) {
   Generator generator(5);
   const loop::Record clean = Loop();
   EXPECT_FALSE(FitOne(clean).FindFinding("force_at_limit")) << "a plateau that was computed";
+  for (const int samples : {30, 60}) {
+    loop::Record coarse =
+        MakeRecord(Cycling(Wave::kSine, 8 * GrossSlipDisplacement(kLaw), 5.25, samples), {});
+    coarse.force = Respond(Model("dahl"), kLaw, coarse.displacement);
+    const FitResult fit = FitOne(coarse, testing::OfModel("dahl"));
+    EXPECT_FALSE(fit.FindFinding("force_at_limit")) << "few readings of one that was computed";
+  }
   const loop::Record noisy = WithForceNoise(clean, 0.2, generator);
   EXPECT_FALSE(FitOne(noisy).FindFinding("force_at_limit"));
   loop::Record counted = noisy;

@@ -134,6 +134,19 @@ TEST(Discrepancy, SlipForceBeyondTheLargestForceIsBelievedOfALawThatFollowsTheRe
   EXPECT_NEAR(fit.Find("slip_force")->value, law.slip_force, 0.03 * law.slip_force);
 }
 
+TEST(Discrepancy, SlipForceThatIsLimitedToTheLargestForceEndsBeyondIt) {
+  const BranchLaw law{5e6, 2.5, 80.0};
+  const History displacement =
+      Cycling(Wave::kSine, 8.5 * law.slip_force / law.tangential_stiffness, 1.25, 1000);
+  Record record = testing::LoopOf(law, displacement);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += 0.1 * law.slip_force * static_cast<double>(i) / 1250;
+  }
+  const ParameterEstimate slip_force = *FitNoisy(record).Find("slip_force");
+  ASSERT_EQ(slip_force.status, ParameterStatus::kAtUpperBound);
+  EXPECT_GT(slip_force.upper95.value(), 1.005 * slip_force.value);
+}
+
 TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
   const auto slip_force = [](const FitOptions& options) {
     return *FitNoisy(OfPosition(0.1), 1, options).Find("slip_force");

@@ -106,6 +106,19 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   EXPECT_EQ(dahl.FindFinding("other_law", "better"), nullptr);
 }
 
+TEST(LawChoice, IsNotMadeForDahlsLawByADrift) {
+  for (const double amplitude : {0.32, 0.54}) {
+    Record record = Virgin("mindlin-dahl", amplitude * kGrossSlip, 3.25);
+    const auto samples = static_cast<double>(record.size());
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] += 0.03 * kMindlin.slip_force * static_cast<double>(i) / samples;
+    }
+    Generator generator(7);
+    const FitResult fit = FitOne(WithForceNoise(record, 0.02, generator));
+    EXPECT_FALSE(fit.law_choice && fit.law_choice->prefers_alternative()) << amplitude;
+  }
+}
+
 TEST(LawChoice, IsNotMadeByTheStepsOfAnEncoder) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     Record record = From(Noisy(Virgin("mindlin-dahl", 0.8 * kGrossSlip, 5.0), seed), kPerCycle / 8);

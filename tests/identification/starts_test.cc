@@ -52,6 +52,19 @@ TEST(Starts, OfStrokesAHundredTimesAsWideAsTheKneeLeadToTheContact) {
   }
 }
 
+TEST(Starts, OfManyTriangularCyclesBeyondSlipLeadToTheContact) {
+  constexpr models::BranchLaw kMindlin{3e7, 1.0 / 3, 100.0};
+  for (const double cycles : {8.25, 10.25, 20.75}) {
+    const History displacement =
+        Cycling(Wave::kTriangle, 5 * GrossSlipDisplacement(kMindlin), cycles, 60);
+    Generator generator(7);
+    const Record record = WithForceNoise(testing::LoopOf(kMindlin, displacement), 0.3, generator);
+    const FitResult fit = FitOne(record);
+    EXPECT_LT(fit.residuals.rms, 0.33) << cycles;
+    EXPECT_LE(WorstError(fit.law, kMindlin), 0.02) << cycles;
+  }
+}
+
 TEST(Starts, ThatAreGivenDoNotDecideOnTheInitialState) {
   const auto truth = ParametersOf(kLaw);
   EXPECT_EQ(FitOne(NoisyLoop(3), {.start = {truth.begin(), truth.end()}}).initial_state,

@@ -186,10 +186,8 @@ TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
 TEST(Answer, ListsTheModelsThatWereCompared) {
   ReportInput input = MadeInput();
   const auto* const dahl = models::FindFrictionModel("dahl");
-  input.compared = {
-      {.model = dahl, .rig = true, .converged = true, .rms = 0.5, .delta_aicc = 70.0},
-      {.model = dahl},
-      {.model = input.fit.model, .converged = true, .rms = 0.4, .held_out_rms = 0.45}};
+  input.compared = {{.model = dahl, .rig = true, .rms = 0.5, .delta_aicc = 70.0},
+                    {.model = input.fit.model, .rms = 0.4, .held_out_rms = 0.45}};
   const std::string text = Answer(input);
   EXPECT_THAT(text, HasSubstr("\n  mindlin-dahl  no            0  0.4          0.45\n"
                               "  dahl          yes          70  0.5             -\n"));
