@@ -101,14 +101,12 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
-  std::vector<double> residuals(problem.size());
-  attempt.solver.response.Bind(problem);
-  Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
-  TakeOffMeasured(data, residuals);
+  Eigen::VectorXd residuals = Predict(problem, solved.solution().theta);
+  TakeOffMeasured(data, {residuals.data(), problem.size()});
   const bool is_forced = data.is_forced();
   const double unit = is_forced ? data.length : data.force * attempt.prepared.force_sense;
   double squares = 0.0;
-  std::size_t k = 0;
+  Eigen::Index k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const RecordView& view = attempt.prepared.records[r].record;

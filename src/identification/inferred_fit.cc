@@ -55,7 +55,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
 /// Adequacy, and intervals that cover what its causes would change.
 /// @param is_limited  did the search end at a limit of its own?
 void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptions& options,
-                        Solver& solver, FitResult& result) {
+                        FitResult& result) {
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
@@ -64,7 +64,7 @@ void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptio
     GradeUse(thresholds, result);
     return;
   }
-  AdequacyTest test = TestAdequacy(fitted, thresholds, solver.response);
+  AdequacyTest test = TestAdequacy(fitted, thresholds);
   const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   GradeUse(thresholds, result);
@@ -99,8 +99,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Solver& solver = attempt.solver;
   const bool is_judged = result.depth >= Depth::kIntervals;
   const bool is_tested = result.depth >= Depth::kFull;
-  Linearization at =
-      LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
+  Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const Estimates fitted(problem, solution, noise, options, std::move(at));
   FillErrors(problem, fitted, result);
@@ -113,7 +112,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {
-    ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
+    ConsiderDepartures(fitted, limit.has_value(), options, result);
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem.parameters, result);
   Append(result.findings, FindOnParameters(fitted, attempt.prepared, options, result));

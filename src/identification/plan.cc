@@ -86,9 +86,8 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
   solution.theta = theta;
   solution.side = SidesAt(problem.parameters, theta);
-  const Estimates estimates(
-      problem, solution, noise, options,
-      LinearizeAt(problem, theta, solver.response, problem.parameters.free()));
+  const Estimates estimates(problem, solution, noise, options,
+                            LinearizeAt(problem, theta, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
   for (const double force : record.force) {

@@ -100,7 +100,6 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
     const ParameterEstimate* const fitted = fit.Find(problem.parameters.NameOf(p));
     return fitted != nullptr && fitted->status != ParameterStatus::kFixed;
   };
-  Response response;
   const Problem fitted = problem_of(options);
   const std::vector<double> theta = ThetaOf(fitted, fit);
   std::vector<std::size_t> inside;
@@ -108,8 +107,8 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
     const bool is_inside = SideOf(fitted.parameters[p], theta[p]) == BoundSide::kInside;
     if (is_inside && was_free(fitted, p)) inside.push_back(p);
   }
-  const Linearization at = LinearizeAt(fitted, theta, response, inside);
-  const Evidence evidence(data.counted, EffectiveSamples(fitted, theta, response));
+  const Linearization at = LinearizeAt(fitted, theta, inside);
+  const Evidence evidence(data.counted, EffectiveSamples(fitted, theta));
   std::vector<std::optional<TermScore>> scores;
   for (const TermChoice& choice : choices) {
     std::optional<TermScore>& score = scores.emplace_back();
@@ -123,7 +122,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
         if (!is_other && !was_free(problem, p)) added.push_back(p);
       }
       if (added.empty()) continue;
-      const Linearization with = LinearizeAt(problem, ThetaOf(problem, fit), response, added);
+      const Linearization with = LinearizeAt(problem, ThetaOf(problem, fit), added);
       score = ScoreColumns(problem, inside, at, evidence, added, with.jacobian);
     } catch (const InvalidArgument&) {
       continue;  // no lag where time does not go on

@@ -416,8 +416,8 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
                 setting.state);
   ASSERT_NEAR(stages.data.length / kLength, 1, 1e-9);
   const std::vector<double> theta = TrueTheta(stages, contact);
-  const DepartureColumns columns =
-      ColumnsOfDepartures(stages.problem, theta, {}, stages.solver.response, 100);
+  const DepartureColumns columns = ColumnsOfDepartures(stages.problem, theta, {}, 100);
+  Response response(stages.problem);
   std::vector<Case> cases = Cases();
   // Of a contact that had slipped before an asymmetry is an offset, and Dahl's own has none.
   const bool tells_asymmetry =
@@ -442,7 +442,7 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       const std::vector<double> with = tested.simulate(departed[r], size);
       const std::vector<double> without = tested.simulate(departed[r], 0.0);
-      const LoadingPath& path = stages.solver.response.MotionOf(r, theta).paths.front().path;
+      const LoadingPath& path = response.MotionOf(r, theta).paths.front().path;
       for (std::size_t i = 0; i < with.size(); ++i, ++row) {
         // Next to a reversal, and where a loop closes, differences see both branches, and a gap or
         // a lag is not yet over: the force is not of first order in them there.
@@ -515,8 +515,7 @@ Record Complete() {
 
 DepartureColumns ColumnsOf(Stages& stages) {
   const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
-  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), {}, stages.solver.response,
-                             100);
+  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), {}, 100);
 }
 
 bool Has(const DepartureColumns& columns, std::string_view code) {

@@ -67,16 +67,12 @@ class Stages {
 
   /// Weighted residuals at θ.
   Eigen::VectorXd ResidualsAt(std::span<const double> theta) {
-    identification::Response response;
-    response.Bind(problem);
-    std::vector<double> force(problem.size());
-    identification::Predict(problem, theta, response, force);
-    Eigen::VectorXd residual(static_cast<Eigen::Index>(force.size()));
+    const Eigen::VectorXd force = identification::Predict(problem, theta);
+    Eigen::VectorXd residual(force.size());
     Eigen::Index k = 0;
     for (const identification::ScaledRecord& record : problem.data->records) {
       for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-        residual[k] =
-            record.root_weight[i] * (force[static_cast<std::size_t>(k)] - record.response()[i]);
+        residual[k] = record.root_weight[i] * (force[k] - record.response()[i]);
       }
     }
     return residual;
@@ -128,7 +124,7 @@ inline identification::Estimates EstimatesOf(Stages& stages,
                                              const identification::Solution& solution,
                                              const identification::Noise& noise) {
   return {stages.problem, solution, noise, stages.options,
-          identification::LinearizeAt(stages.problem, solution.theta, stages.solver.response,
+          identification::LinearizeAt(stages.problem, solution.theta,
                                       stages.problem.parameters.free())};
 }
 

@@ -79,8 +79,7 @@ void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
 
 }  // namespace
 
-AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
-                          Response& response) {
+AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds) {
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
@@ -97,8 +96,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
   const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
-  DepartureColumns departures =
-      ColumnsOfDepartures(problem, solution.theta, thresholds, response, most);
+  DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, thresholds, most);
   if (departures.terms.empty()) return {};
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
   GramAxes axes = gram.AxesOfAll();

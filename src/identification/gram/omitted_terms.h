@@ -23,7 +23,6 @@ struct AdequacyTest {
 };
 
 /// Tests a fit. Residuals that errors of the displacement make are noise, too.
-AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
-                          Response& response);
+AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification

@@ -92,33 +92,31 @@ void SetProgress(const ScaledRecord& record, std::span<const double> response,
 }  // namespace
 
 std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
-                            double held_readings, Response& response) {
+                            double held_readings) {
   const ScaledRecords& data = *problem.data;
   const bool is_forced = data.is_forced();
   const bool tells_asymmetry = problem.is_virgin() &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies && !is_forced;
   std::vector<double> contact(problem.size());  // its response
-  std::vector<double> complete(problem.size());
   std::vector<double> by_asymmetry(problem.size());
   ResponseColumns wanted;
   if (tells_asymmetry) wanted[TermId::kAsymmetry] = by_asymmetry;
-  response.Bind(problem);
-  response.Evaluate(theta, contact, wanted);
+  Response(problem).Evaluate(theta, contact, wanted);
   if (is_forced) {
     const double scale = std::exp(LogScaleAt(problem, theta));
     for (double& value : contact) value *= scale;
-    complete = contact;
-  } else {
-    Predict(problem, theta, response, complete);
   }
+  const Eigen::VectorXd predicted = is_forced ? Eigen::VectorXd() : Predict(problem, theta);
+  const std::span<const double> complete =
+      is_forced ? std::span<const double>(contact) : std::span(predicted.data(), problem.size());
   double peak = 0.0;
   for (const double value : contact) peak = std::max(peak, std::abs(value));
   const bool is_held = IsDisplacementHeld(data, held_readings);
   std::vector<Place> places(problem.size());
   std::size_t begin = 0;
   for (const ScaledRecord& record : data.records) {
-    const std::span<const double> whole = std::span(complete).subspan(begin, record.size());
+    const std::span<const double> whole = complete.subspan(begin, record.size());
     const std::span<const double> own = std::span(contact).subspan(begin, record.size());
     const std::span<Place> of = std::span(places).subspan(begin, record.size());
     std::vector<double> time = record.time;
@@ -274,9 +272,7 @@ void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<c
   }
   Problem moved = problem;
   moved.data = &data;
-  Response response;
-  response.Bind(moved);
-  response.Evaluate(theta, motion);
+  Response(moved).Evaluate(theta, motion);
   for (std::size_t i = 0; i < motion.size(); ++i) motion[i] = (motion[i] - places[i].force) / step;
 }
 
@@ -285,9 +281,8 @@ void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<c
 std::span<const Departure> Departures() { return kDepartures; }
 
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
-                                     const Thresholds& thresholds, Response& response,
-                                     std::size_t most) {
-  const std::vector<Place> places = PlacesOf(problem, theta, thresholds.held_readings, response);
+                                     const Thresholds& thresholds, std::size_t most) {
+  const std::vector<Place> places = PlacesOf(problem, theta, thresholds.held_readings);
   const bool is_forced = problem.data->is_forced();
   constexpr std::size_t kRoom =
       std::tuple_size_v<decltype(Departure::columns)> * kDepartures.size();

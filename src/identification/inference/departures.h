@@ -35,7 +35,7 @@ struct Place {
 /// Returns those of every sample at θ.
 /// @param held_readings  fraction of the readings that repeat the last one, of a held displacement
 std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
-                            double held_readings, Response& response);
+                            double held_readings);
 
 /// A column of an omitted term, of the response.
 using DepartureColumn = double (*)(const Place&);
@@ -73,7 +73,6 @@ std::span<const Departure> Departures();
 /// Returns the columns that are not zero of terms that are not fitted.
 /// @param most  columns that are wanted; fewer where the next term's do not fit
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
-                                     const Thresholds& thresholds, Response& response,
-                                     std::size_t most);
+                                     const Thresholds& thresholds, std::size_t most);
 
 }  // namespace mindahl::identification

@@ -52,7 +52,7 @@ struct Linearization {
 };
 
 /// @param columns  positions in θ to differentiate by
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
                           std::span<const std::size_t> columns);
 
 /// A problem with its solution and its noise, and what follows: standard errors, intervals and

@@ -292,11 +292,10 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
          EstimateAutocorrelation(data.records, residual).SquaredCorrelations();
 }
 
-double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response) {
-  std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, theta, response, residual);
+double EffectiveSamples(const Problem& problem, std::span<const double> theta) {
+  const Eigen::VectorXd residual = EvaluateResidual(problem, theta);
   const auto least = static_cast<double>(problem.parameters.free().size() + 1);
-  return std::max(EffectiveSamples(*problem.data, residual), least);
+  return std::max(EffectiveSamples(*problem.data, {residual.data(), problem.size()}), least);
 }
 
 Evidence::Evidence(std::size_t samples, double effective)

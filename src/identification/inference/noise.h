@@ -92,9 +92,8 @@ struct Noise {
 /// other: those that count, over the variance inflation from autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
 
-/// Returns the same of a solution's residuals, no fewer than determine its free parameters. Binds
-/// the response to the problem.
-double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response);
+/// Returns the same of a solution's residuals, no fewer than determine its free parameters.
+double EffectiveSamples(const Problem& problem, std::span<const double> theta);
 
 /// Compares two fits to the same samples; every comparison of fits uses it.
 class Evidence {

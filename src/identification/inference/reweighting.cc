@@ -18,11 +18,7 @@ namespace mindahl::identification {
 
 Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& problem,
                             std::span<const double> theta) {
-  const std::size_t samples = problem.size();
-  Response response;
-  response.Bind(problem);
-  Eigen::VectorXd force(static_cast<Eigen::Index>(samples));
-  Predict(problem, theta, response, {force.data(), samples});
+  const Eigen::VectorXd force = Predict(problem, theta);
   Eigen::MatrixXd forces(force.size(), static_cast<Eigen::Index>(drawn.size()));
   ScaledRecords data = *problem.data;
   Problem with_drawn = problem;
@@ -37,9 +33,7 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
         return (read - record.units.displacement_reference) / record.units.length;
       });
     }
-    response.Bind(with_drawn);
-    Predict(with_drawn, theta, response,
-            {forces.col(static_cast<Eigen::Index>(k)).data(), samples});
+    forces.col(static_cast<Eigen::Index>(k)) = Predict(with_drawn, theta);
   }
   return forces.colwise() - force;
 }
@@ -96,7 +90,7 @@ class Reweighting {
         degrees_(DegreesOfFreedom(data, problem.parameters.free().size())) {
     auto to = counts_.begin();
     for (const ScaledRecord& record : data.records) to = std::ranges::copy(record.counts, to).out;
-    PredictForce();
+    force_ = Predict(problem_, solution_.theta);
   }
 
   /// Fits until the forces settle.
@@ -115,7 +109,7 @@ class Reweighting {
         solver_.Solve(start, SolverOptionsOf(options_), solution_);
       }
       const Eigen::ArrayXd last_force = force_;
-      PredictForce();
+      force_ = Predict(problem_, solution_.theta);
       const Eigen::ArrayXd last_step = std::exchange(step, force_ - last_force);
       // Weights and forces that chase each other meet half way.
       if ((step * last_step).sum() < -kTurnsBack * last_step.square().sum()) fraction_ /= 2;
@@ -171,12 +165,6 @@ class Reweighting {
   }
 
  private:
-  void PredictForce() {
-    solver_.response.Bind(problem_);
-    Predict(problem_, solution_.theta, solver_.response,
-            {force_.data(), static_cast<std::size_t>(force_.size())});
-  }
-
   /// Returns model − measured of every sample, without weights.
   [[nodiscard]] Eigen::ArrayXd Residual() const {
     Eigen::ArrayXd residual = force_;

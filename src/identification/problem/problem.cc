@@ -402,10 +402,12 @@ void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
   }
 }
 
-void Predict(const Problem& problem, std::span<const double> theta, Response& response,
-             std::span<double> predicted) {
-  response.Evaluate(theta, predicted);
-  Complete(problem, theta, predicted);
+Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta) {
+  Eigen::VectorXd predicted(static_cast<Eigen::Index>(problem.size()));
+  const std::span<double> values(predicted.data(), problem.size());
+  Response(problem).Evaluate(theta, values);
+  Complete(problem, theta, values);
+  return predicted;
 }
 
 void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
@@ -472,10 +474,12 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
   Weight(*problem.data, residual);
 }
 
-void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
-                      std::span<double> residual) {
-  response.Bind(problem);
-  Differentiate(problem, theta, response, {}, residual, {});
+Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta) {
+  Eigen::VectorXd residual = Predict(problem, theta);
+  const std::span<double> values(residual.data(), problem.size());
+  TakeOffMeasured(*problem.data, values);
+  Weight(*problem.data, values);
+  return residual;
 }
 
 }  // namespace mindahl::identification

@@ -61,6 +61,9 @@ class ResponseColumns {
 /// contact is unloaded, by its lag, its gap and its asymmetry, and its buffers.
 class Response {
  public:
+  Response() = default;
+  explicit Response(const Problem& problem) { Bind(problem); }
+
   void Bind(const Problem& problem);
   void Evaluate(std::span<const double> theta, std::span<double> t,
                 const ResponseColumns& columns = {});
@@ -97,8 +100,7 @@ class Response {
 };
 
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
-void Predict(const Problem& problem, std::span<const double> theta, Response& response,
-             std::span<double> predicted);
+Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta);
 
 /// Takes what is measured off what the model predicts, of every sample; no weight.
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
@@ -106,9 +108,8 @@ void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
 /// Multiplies values of every sample by the roots of their weights.
 void Weight(const ScaledRecords& data, std::span<double> values);
 
-/// Weighted residuals, model − measured, of every sample; binds the response to the problem.
-void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
-                      std::span<double> residual);
+/// Weighted residuals, model − measured, of every sample.
+Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta);
 
 /// Adds a multiple of the column of a linear parameter, of every sample; no weight.
 /// @param theta  of all parameters: a column may depend on some (Term::shapes)

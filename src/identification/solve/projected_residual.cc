@@ -53,10 +53,9 @@ std::span<double> Writable(Eigen::VectorXd& column) {
 
 }  // namespace
 
-void ProjectedResidual::Bind(const Problem& problem, Response& response) {
+void ProjectedResidual::Bind(const Problem& problem) {
   problem_ = &problem;
-  response_ = &response;
-  response.Bind(problem);
+  response_.Bind(problem);
   searched_.clear();
   theta_.clear();
   for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
@@ -177,12 +176,12 @@ double ProjectedResidual::Regress(double scale) {
 
 double ProjectedResidual::Evaluate(std::span<const double> u) {
   MoveTo(u);
-  response_->Evaluate(theta_, Writable(response_values_));
+  response_.Evaluate(theta_, Writable(response_values_));
   return Regress(std::exp(LogScaleAt(*problem_, theta_)));
 }
 
 double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
-  response_->Evaluate(theta, Writable(response_values_));
+  response_.Evaluate(theta, Writable(response_values_));
   double cost = Regress(std::exp(LogScaleAt(*problem_, theta)));
   const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
   const Parameter& parameter = problem_->parameters[of_scale];
@@ -203,7 +202,7 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   MoveTo(u);
   const auto count = static_cast<Eigen::Index>(u.size());
   derivatives_.resize(response_values_.size(), count);
-  DifferentiateResponse(*problem_, theta_, *response_, searched_, Writable(response_values_),
+  DifferentiateResponse(*problem_, theta_, response_, searched_, Writable(response_values_),
                         {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
   const double cost = Regress(std::exp(LogScaleAt(*problem_, theta_)));
   derivatives_ *= scale_;

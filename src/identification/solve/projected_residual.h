@@ -41,9 +41,8 @@ struct CompressedResidual {
 /// with a prior, are searched too; the residuals of priors are in the cost, not in residual().
 class ProjectedResidual {
  public:
-  /// @param problem   must outlive the use; its weights may change before the next Bind()
-  /// @param response  bound to the problem here
-  void Bind(const Problem& problem, Response& response);
+  /// @param problem  must outlive the use; its weights may change before the next Bind()
+  void Bind(const Problem& problem);
 
   /// Moves a parameter that the problem holds.
   void HoldAt(std::size_t parameter, double theta);
@@ -80,7 +79,7 @@ class ProjectedResidual {
   [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
-  Response* response_ = nullptr;
+  Response response_;
   std::vector<std::size_t> searched_;
   std::vector<double> theta_;        // of what is not eliminated
   std::vector<std::size_t> linear_;  // what is, as far as their columns are independent

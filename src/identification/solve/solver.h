@@ -54,7 +54,7 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 class Solver {
  public:
   /// @param problem  must outlive the solves; its weights may change between them
-  void Bind(const Problem& problem) { residual_.Bind(problem, response); }
+  void Bind(const Problem& problem) { residual_.Bind(problem); }
 
   /// Moves a parameter that the problem holds.
   void HoldAt(std::size_t parameter, double theta) { residual_.HoldAt(parameter, theta); }
@@ -64,8 +64,6 @@ class Solver {
 
   /// @param start  θ, moved into the bounds
   void Solve(std::span<const double> start, const SolverOptions& options, Solution& solution);
-
-  Response response;  ///< may be bound to another problem between the solves
 
  private:
   void SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution);
