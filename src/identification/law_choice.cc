@@ -153,7 +153,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
   // Of a contact under cycles of one amplitude the laws differ in what changes with time. Where the
-  // residuals look like such a change the other law is to be better beside that, too.
+  // residuals look like such a change the other law is to be better with that term, too.
   const auto drift = std::ranges::find_if(fit.adequacy.causes, [](const Cause& cause) {
     return cause.term == "force_drift" || cause.term == "slip_trend";
   });
