@@ -10,12 +10,15 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
+#include "core/refuse.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
@@ -37,7 +40,26 @@ constexpr std::array kFlags = {
     CycleFlag{"glitches", "spikes or dropouts were left out"},
 };
 
+/// Refuses names of parameters that no fit has: a cycle that cannot be fitted is flagged only.
+void RequireParameters(const FitOptions& options) {
+  const auto require = [](const auto& values) {
+    for (const auto& [name, value] : values) {
+      if (identification::TermOfParameter(name) != nullptr) continue;
+      throw InvalidArgument(
+          "parameter " +
+          UnknownAmong(
+              name, identification::Terms() | std::views::transform(&identification::Term::name)));
+    }
+  };
+  require(options.fixed);
+  require(options.start);
+  require(options.bounds);
+  require(options.priors);
+}
+
 FitOptions OfSteadyCycles(FitOptions options) {
+  RequireParameters(options);
+  options.preparation.begins_at_turn = true;
   if (!options.initial_state) options.initial_state = models::InitialState::kSteady;
   return options;
 }

@@ -140,7 +140,9 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
     highest = std::max(highest, turn.displacement);
   }
   const double amplitude = (highest - lowest) / 2;
-  const double near_extreme = direction > 0 ? lowest : highest;
+  const double near_extreme = initial.turns_at_first ? displacement.front()
+                              : direction > 0        ? lowest
+                                                     : highest;
   if (memory == Memory::kNone) {
     open.Open({near_extreme, amplitude, -1, BranchStart::kSteadyExtreme, direction});
     return;

@@ -43,6 +43,24 @@ TEST(CycleFitter, FindsTheTruthOfACleanCycle) {
   }
 }
 
+TEST(CycleFitter, KnowsThatACycleBeginsAtATurn) {
+  // Cycles of two amplitudes in turn: every other one begins within the range of its samples.
+  const models::BranchLaw law = testing::kCycleLaw;
+  loop::Record record;
+  for (int i = 0; i < 600; ++i) {
+    const double reach = i / 100 % 2 == 0 ? 5.5e-6 : 6.5e-6;
+    record.displacement.push_back(reach * std::sin(2 * std::numbers::pi * i / 100));
+  }
+  record.force = Respond(Model("mindlin-dahl"), law, record.displacement);
+  const std::vector<Cycle> cycles = CyclesOf(record);
+  ASSERT_GE(cycles.size(), 4U);
+  for (const Cycle& cycle : cycles) {
+    const CycleFit fit = CycleFitter({}).Fit(cycle);
+    EXPECT_NEAR(*fit["sigma"], law.tangential_stiffness, 1e-3 * law.tangential_stiffness);
+    EXPECT_NEAR(*fit["alpha"], law.shape_exponent, 1e-3);
+  }
+}
+
 TEST(CycleFitter, HasNoFrictionCoefficientUnderALoadOfTheOtherSign) {
   Cycle cycle = FirstCycle(0.0);
   cycle.record.normal_load.assign(cycle.record.size(), -50.0);
@@ -54,7 +72,8 @@ TEST(CycleFitter, HasNoFrictionCoefficientUnderALoadOfTheOtherSign) {
 
 TEST(CycleFitter, HasTheMinimumAndTheErrorsOfAFitAlone) {
   constexpr double kSolverTolerance = 1e-2;  // standard errors, as of Fitter::Continue()
-  const identification::FitOptions options{.initial_state = models::InitialState::kSteady};
+  const identification::FitOptions options{.initial_state = models::InitialState::kSteady,
+                                           .preparation = {.begins_at_turn = true}};
   CycleFitter fitter(options);
   for (const Cycle& cycle : CyclesOf(TestRecord(60))) {
     const CycleFit fit = fitter.Fit(cycle);

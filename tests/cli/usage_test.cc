@@ -122,6 +122,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --config no.toml", "no.toml"},
     {"track @ --output /dev/null", "cannot write '/dev/null'"},
     {"track @ --output # --compare", "--compare"},
+    {"track @ --output # --fix foo=1", "parameter 'foo' is unknown: must be one of sigma"},
     {"track @ --output # --covariate 1", "--covariate"},
     {"track @ --output # --terms asymmetry", "--terms asymmetry is not available in track"},
     {"track @ --output # --resume --overwrite", "--resume excludes --overwrite"},

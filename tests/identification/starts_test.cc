@@ -65,6 +65,17 @@ TEST(Starts, OfManyTriangularCyclesBeyondSlipLeadToTheContact) {
   }
 }
 
+TEST(Starts, OfAnExponentThatIsGivenAreLookedForAtIt) {
+  const models::BranchLaw law{4e7, 0.9, 40.0};
+  Record record = MakeRecord(Cycling(Wave::kTriangle, 2e-5, 2.5, 20), {});
+  record.force = Respond(Model("dahl"), law, record.displacement);
+  Generator generator(7);
+  record = WithForceNoise(record, 0.04, generator);
+  FitOptions options = testing::OfModel("dahl");
+  options.start = {{"alpha", law.shape_exponent}};
+  EXPECT_LT(FitOne(record, options).residuals.rms, 0.06);
+}
+
 TEST(Starts, ThatAreGivenDoNotDecideOnTheInitialState) {
   const auto truth = ParametersOf(kLaw);
   EXPECT_EQ(FitOne(NoisyLoop(3), {.start = {truth.begin(), truth.end()}}).initial_state,

@@ -55,6 +55,9 @@ struct PreparationOptions {
   /// law is a bias.
   std::optional<double> displacement_noise{};
 
+  /// The first sample of each record is a turning point, as of a cycle that was cut out.
+  bool begins_at_turn = false;
+
   // Samples that do not count still make history.
 
   /// Samples under another load [N] do not count.

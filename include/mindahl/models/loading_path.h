@@ -92,6 +92,9 @@ struct LoadingPath {
 struct InitialContact {
   InitialState state = InitialState::kVirgin;
   double unloaded_displacement = 0.0;  ///< [m], used when virgin: where T = 0
+  /// The motion turns at the first sample, of a steady contact: it came there from the other end of
+  /// the loop. Else it came from the near end, whose turn is not among the samples.
+  bool turns_at_first = false;
   /// a of slip forces Tc(1 + a) where the motion is towards positive displacement and
   /// Tc(1 − a) where it is not, in (−1, 1): elements of those limits are the symmetric ones that
   /// set out with −a of their slip force, under a constant a·Tc (docs/theory.md §5). A steady

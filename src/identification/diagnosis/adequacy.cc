@@ -176,9 +176,9 @@ void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result) {
   if (!is_loop) {
     finding.numbers = {{"r_squared", result.residuals.r_squared}};
     finding.kind = "no_loop";
-    adequacy.causes.clear();  // of first order, about a curve that is none of the record's
+    adequacy.causes.clear();  // to first order about a curve that is not the record's
   }
-  // Another account of a curve that is not there goes too, also where it is but a note.
+  // Another account of a curve that is not there goes too, even if it is only a note.
   std::erase_if(result.findings, [](const Finding& other) {
     return other.code == "shape_or_rig" ||
            (!other.parameters.empty() && !other.code.row().holds_without_model);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -26,16 +25,9 @@ double LogScaleAt(const Problem& problem, std::span<const double> theta) {
   return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
-std::vector<std::span<double>> ResponseColumns::Wanted() const {
-  std::vector<std::span<double>> wanted;
-  std::ranges::copy_if(columns_, std::back_inserter(wanted),
-                       [](std::span<double> column) { return !column.empty(); });
-  return wanted;
-}
-
 ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) const {
   ResponseColumns part;
-  std::ranges::transform(columns_, part.begin(), [&](std::span<double> column) {
+  std::ranges::transform(columns_, part.columns_.begin(), [&](std::span<double> column) {
     return column.empty() ? column : column.subspan(begin, count);
   });
   return part;
@@ -63,12 +55,13 @@ bool IsMasing(const Problem& problem) {
 /// Puts the force in the place of the state z, and its derivatives in the place of those of z.
 void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<double> t,
                       const ResponseColumns& columns) {
-  const std::vector<std::span<double>> wanted = columns.Wanted();
   const std::span<double> by_asymmetry = columns[TermId::kAsymmetry];
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double load = record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
     const double slope = models::JointForceSlope(t[i], load, asymmetry);
-    for (const std::span<double> column : wanted) column[i] *= slope;
+    for (const std::span<double> column : columns) {
+      if (!column.empty()) column[i] *= slope;
+    }
     if (!by_asymmetry.empty()) by_asymmetry[i] = load * t[i] * t[i];
     t[i] = models::JointForce(t[i], load, asymmetry);
   }
@@ -104,6 +97,7 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
   const models::InitialContact initial = {
       .state = problem_->initial_state,
       .unloaded_displacement = problem_->is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
+      .turns_at_first = record.begins_at_turn,
       .asymmetry = IsMasing(*problem_) ? parameters.AsymmetryAt(theta) : 0.0};
   ContactMotion kind = ContactMotion::kMeasured;
   double amount = 0.0;
@@ -206,7 +200,7 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
     if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);
     if (record.load == 1) continue;
     for (double& value : values) value *= record.load;
-    for (const std::span<double> column : parts.Wanted()) {
+    for (const std::span<double> column : parts) {
       for (double& value : column) value *= record.load;
     }
   }
@@ -232,8 +226,8 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
        value(TermId::kSlipTrend) * ArrayOf(record.time)) +
       value(TermId::kSlipSpeed) * change - value(TermId::kDragFraction);
   Array t(response.data(), std::ssize(response));
-  for (const std::span<double> column : columns.Wanted()) {
-    Array(column.data(), t.size()) *= factor;
+  for (const std::span<double> column : columns) {
+    Array(column.data(), std::ssize(column)) *= factor.head(std::ssize(column));
   }
   const auto set = [&](TermId id, const auto& derivative) {
     if (!columns[id].empty()) Array(columns[id].data(), t.size()) = derivative;

@@ -43,10 +43,8 @@ class ResponseColumns {
  public:
   [[nodiscard]] std::span<double>& operator[](TermId id) { return columns_[RowOf(id)]; }
   [[nodiscard]] std::span<double> operator[](TermId id) const { return columns_[RowOf(id)]; }
-  [[nodiscard]] auto begin() { return columns_.begin(); }
-  [[nodiscard]] auto end() { return columns_.end(); }
-  /// Returns those that are wanted.
-  [[nodiscard]] std::vector<std::span<double>> Wanted() const;
+  [[nodiscard]] auto begin() const { return columns_.begin(); }
+  [[nodiscard]] auto end() const { return columns_.end(); }
   /// Returns those of some samples.
   [[nodiscard]] ResponseColumns Part(std::size_t begin, std::size_t count) const;
 

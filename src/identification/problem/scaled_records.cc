@@ -230,6 +230,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     target.imposed = records.excitation;
     target.is_smoothed = prepared.displacement_noise > 0;
     target.reversals = prepared.reversals;
+    target.begins_at_turn = options.preparation.begins_at_turn;
     target.counts = prepared.counts;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();

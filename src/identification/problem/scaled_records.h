@@ -32,6 +32,7 @@ struct ScaledRecord {
   bool is_smoothed = false;    // does the displacement have noise, which was smoothed?
   bool turns_between = false;  // does the motion turn between samples, or at the outermost ones?
   std::vector<std::size_t> reversals;  // samples
+  bool begins_at_turn = false;
   /// The record that this one has some samples of, of whose motion a lag is; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;

@@ -58,7 +58,7 @@ class Plane {
     if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
   }
 
-  /// The best looks of those that compete: of one α, or where α is held of one third of the
+  /// The best looks of those that compete: of one α, or where α is given of one third of the
   /// reaches; those that lead anywhere. Contacts are unloaded at their first samples.
   std::vector<Look> Best() {
     std::vector<double> theta;
@@ -80,17 +80,17 @@ class Plane {
         rig_is_open ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
     const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
     std::vector<Look> best(rows.size());
-    const std::size_t count = shape.fixed ? 1 : rows.size();
+    const bool is_given = shape.fixed || shape.started_by_user;
+    const std::size_t count = is_given ? 1 : rows.size();
     for (std::size_t k = 0; k < count; ++k) {
       const std::vector<double>& reaches = rows[k].reaches;
-      theta[kShape] =
-          shape.fixed ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
+      theta[kShape] = is_given ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
       // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
       // minimum, the others are looked at around it.
       const double seen = k == 0 ? 0.0 : best[0].reach;
       for (std::size_t i = 0; i < reaches.size(); ++i) {
         if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
-        Look& group = best[shape.fixed ? i * kThirds / reaches.size() : k];
+        Look& group = best[is_given ? i * kThirds / reaches.size() : k];
         for (const double ratio : ratios) {
           KeepBetter(group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
         }
