@@ -58,9 +58,7 @@ struct PreparationOptions {
   /// The first sample of each record is a turning point, as of a cycle that was cut out.
   bool begins_at_turn = false;
 
-  // Samples that do not count still make history.
-
-  /// Samples under another load [N] do not count.
+  /// Samples under another load [N] do not count; such samples, and those below, make history.
   std::optional<Interval> load_window{};
 
   /// Samples of other cycles do not count. The first cycle lasts from the record's start to its
@@ -125,11 +123,8 @@ struct PreparedRecords {
 };
 
 /// Generates 20 to 200 synthetic realisations of the displacement readings (noise, encoder phase),
-/// to propagate their errors through a fit.
-///
-/// An error of a turning point goes along with the whole branch that starts there, one of an
-/// encoder with all turning points at that count, and smoothing ties neighbours together: no
-/// variance of a sample represents that; a drawn record has it all.
+/// to propagate their errors through a fit: that of a turning point goes along with the whole
+/// branch that starts there, which no variance of a sample represents.
 /// @returns the same every time; null where all displacements are exact
 std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records);
 
