@@ -249,14 +249,14 @@ bool HasTermOf(const Problem& problem, const Departure& departure) {
 
 /// Replaces a motion of the contact beside its displacement by what it changes in the response.
 /// @param places  of all samples at θ
+/// @param data    copy of the problem's records, of which the displacements are overwritten
 void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<const Place> places,
-                  DepartureColumn column, std::span<double> motion) {
+                  DepartureColumn column, ScaledRecords& data, std::span<double> motion) {
   constexpr double kSmall = 1e-6;  // of the half range of the displacement
   double largest = 0.0;
   for (const double way : motion) largest = std::max(largest, std::abs(way));
   if (largest == 0) return;
   const double step = kSmall / largest;
-  ScaledRecords data = *problem.data;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::vector<double>& measured = problem.data->records[r].displacement;
@@ -283,6 +283,7 @@ std::span<const Departure> Departures() { return kDepartures; }
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      const Thresholds& thresholds, std::size_t most) {
   const std::vector<Place> places = PlacesOf(problem, theta, thresholds.held_readings);
+  ScaledRecords moved = *problem.data;
   const bool is_forced = problem.data->is_forced();
   constexpr std::size_t kRoom =
       std::tuple_size_v<decltype(Departure::columns)> * kDepartures.size();
@@ -300,7 +301,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       const std::span<double> values(result.columns.col(place).data(), problem.size());
       std::ranges::transform(places, values.begin(), column);
       if (departure.moves && !is_forced) {
-        FollowMotion(problem, {theta.begin(), theta.end()}, places, column, values);
+        FollowMotion(problem, {theta.begin(), theta.end()}, places, column, moved, values);
       }
       Weight(*problem.data, values);
       if (!result.columns.col(place).isZero(0.0)) term.places.push_back(place);
