@@ -152,8 +152,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
   if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other->law;
-  // Of a contact under cycles of one amplitude the laws differ in what changes with time. Where the
-  // residuals look like such a change the other law is to be better with that term, too.
+  // Under cycles of one amplitude, the two laws differ only in a transient. A drift of the force or
+  // of the slip force resembles it: if the residuals show one, the other law must also fit better
+  // with that term in both fits.
   const auto drift = std::ranges::find_if(fit.adequacy.causes, [](const Cause& cause) {
     return cause.term == "force_drift" || cause.term == "slip_trend";
   });

@@ -111,7 +111,8 @@ SolvedFit FitBestState(const Attempt& attempt) {
                          candidate.problem.parameters.free().size());
   };
   const double gain = criterion(steady) - criterion(virgin);
-  // Where the virgin contact is unloaded at a limit of the search it must fit clearly better.
+  // If the search moved the unloaded position to its own limit, the virgin state is chosen only if
+  // it fits better by ΔAICc = 10.
   const bool is_doubtful = steady.solution.converged && IsUnloadedAtLimit(virgin);
   const bool is_virgin = gain > (is_doubtful ? options.thresholds.undecided : 0.0);
   Candidate& best = is_virgin ? virgin : steady;

@@ -102,7 +102,7 @@ class Differentiation {
     result.force = origin_gradient;
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) return result;
-    // What the force at the origin changes of height and rate.
+    // The force at the origin changes the height and the rate of the branch.
     const Gradient remaining = scale.remaining_per_force * branch.direction * origin_gradient;
     result.height += scale.span * remaining;
     result.log_rate += (shape_.shape_exponent - 1) * remaining / scale.remaining;

@@ -330,7 +330,7 @@ TEST(Answer, SaysThatStiffnessAndSlipForceIncludeADrag) {
   EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr(clause)));
   testing::AddParameter(input.fit, "drag_fraction", "-", 0.3, 0.01);
   EXPECT_THAT(LineOf(input, "stiffness"), HasSubstr(clause));
-  // What has no value includes nothing.
+  // The clause is omitted if sigma has no value.
   input.fit.parameters.front().identifiability = Identifiability::kNotIdentifiable;
   EXPECT_THAT(LineOf(input, "stiffness"), Not(HasSubstr(clause)));
 }
