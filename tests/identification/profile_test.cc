@@ -44,6 +44,29 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
   }
 }
 
+TEST(Profile, CoversWhatOneSampleOfAStrokeLeavesOpen) {
+  // Where one sample of a stroke slips in part, σ makes up for any α up to that at which the next
+  // sample does too: the sum of squares has an edge there, and a parabola sees one side of it.
+  int covered = 0;
+  constexpr int kLoops = 12;
+  for (std::uint64_t seed = 0; seed < kLoops; ++seed) {
+    Generator generator(seed);
+    const History displacement = Cycling(Wave::kTriangle, 14 * kGrossSlip, 3.0, 40);
+    const Record record = WithForceNoise(testing::LoopOf(kMindlin, displacement),
+                                         0.002 * kMindlin.slip_force, generator);
+    const FitResult fit = FitOne(record);
+    const auto covers = [&](const char* name, double value) {
+      const ParameterEstimate& estimate = *fit.Find(name);
+      return std::clamp(value, *estimate.lower95, *estimate.upper95) == value;
+    };
+    if (covers("alpha", kMindlin.shape_exponent) &&
+        covers("sigma", kMindlin.tangential_stiffness)) {
+      ++covered;
+    }
+  }
+  EXPECT_GE(covered, kLoops - 1);
+}
+
 TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   // Far from slip α rises with Tc; a bound on α holds Tc back, and not the data.
   Stages stages(NoisyLoop(0.5, 0.0005, 3), {.bounds = {{"alpha", {0.0, 0.7}}}});

@@ -157,6 +157,13 @@ std::vector<double> Estimates::Beside(std::size_t parameter, double step) const 
   return theta;
 }
 
+double Estimates::SamplesOf(std::size_t parameter) const {
+  const std::optional<Eigen::Index> place = PlaceOf(parameter);
+  if (!place) return 0.0;
+  const Eigen::ArrayXd squares = (at_.jacobian * white_factor_.col(*place)).array().square();
+  return squares.sum() * squares.sum() / squares.square().sum();
+}
+
 void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const Parameter& parameter = problem_.parameters[p];
   const double theta = solution_.theta[p];

@@ -87,6 +87,9 @@ class Estimates {
   [[nodiscard]] double FStatistic(std::size_t parameter, double sum_of_squares) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
+  /// Returns the number of samples on which a parameter rests: (Σh²)²/Σh⁴ of the influences h of
+  /// the samples on its θ (Kish 1965), n where they have the same.
+  [[nodiscard]] double SamplesOf(std::size_t parameter) const;
   /// Returns the half width of an interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
   /// Returns the F beyond which a held parameter is outside its interval.

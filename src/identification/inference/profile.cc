@@ -141,8 +141,20 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
       .IsOpenAbove(options.thresholds);
 }
 
+/// True if α rests on so few samples of a stroke that the likelihood has an edge wherever one more
+/// sample begins to slip: up to there σ makes up for any α.
+bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
+  constexpr double kFew = 2.0;  // of a stroke
+  double strokes = 0.0;
+  for (const RecordFit& record : result.records) {
+    strokes += static_cast<double>(record.reversals.size()) + 1;
+  }
+  return IsFree(fitted, kShape) && fitted.SamplesOf(kShape) < kFew * strokes;
+}
+
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail: all of a loop that
-/// hardly slips, of a law at a bound, and where Tc or the rig is too badly known for a parabola.
+/// hardly slips, of a law at a bound, and where Tc or the rig is too badly known for a parabola; σ
+/// and α where few samples slip in part.
 std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
   const auto is_at_bound = [&](std::size_t p) {
@@ -161,6 +173,7 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
        std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
        is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options, solver));
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig, kSpring};
+  if (RestsOnFewSamples(fitted, result)) return {kStiffness, kShape};
   if (is_badly_known(kStiffness)) return {kStiffness};
   return {};
 }
