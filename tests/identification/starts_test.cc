@@ -1,4 +1,5 @@
 #include <array>
+#include <tuple>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
@@ -49,6 +50,19 @@ TEST(Starts, OfStrokesAHundredTimesAsWideAsTheKneeLeadToTheContact) {
     const FitResult fit = FitOne(record, testing::OfModel("dahl"));
     EXPECT_LT(fit.residuals.rms, 0.017) << alpha;
     EXPECT_NEAR(fit.law.shape_exponent, alpha, 0.1);
+  }
+}
+
+TEST(Starts, OfFewSamplesInPartialSlipLeadToASmoothLaw) {
+  // Under a sharper law all but one of them have slipped, and none shows a way back.
+  for (const auto& [alpha, lambda, samples] :
+       {std::tuple(0.6, 80.0, 400), {0.7, 60.0, 400}, {0.85, 30.0, 200}}) {
+    const models::BranchLaw law{1e7, alpha, 10.0};
+    const double reach = lambda * GrossSlipDisplacement(law);
+    const History displacement = Cycling(Wave::kTriangle, reach, 3.25, samples);
+    Generator generator(7);
+    const Record record = WithForceNoise(testing::LoopOf(law, displacement), 0.02, generator);
+    EXPECT_LT(FitOne(record).residuals.rms, 0.022) << alpha;
   }
 }
 

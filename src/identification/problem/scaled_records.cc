@@ -337,8 +337,8 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
 }
 
 ScaledRecords Thinned(const ScaledRecords& data) {
-  // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
-  constexpr double kKeptOfAStroke = 8.0;
+  // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)³.
+  constexpr double kKeptOfAStroke = 10.0;
   // Cycles that are thinned so, spread over the record: others to their ends and one sample
   // between.
   constexpr std::size_t kDenseCycles = 8;
@@ -360,7 +360,7 @@ ScaledRecords Thinned(const ScaledRecords& data) {
       double next = 1.0;
       for (std::size_t i = begin + 1; way != 0 && i < end && next < kept; ++i) {
         const double share = (record.displacement[i] - record.displacement[begin]) / way;
-        const double passed = kept * std::sqrt(std::max(share, 0.0));
+        const double passed = kept * std::cbrt(share);
         if (passed < next) continue;
         samples.push_back(i);
         next = std::floor(passed) + 1;

@@ -216,6 +216,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     return 0.0;
   }
   constexpr std::size_t kStartsAmongKinks = 4;
+  constexpr double kSmooth = 1.0;  // α
   // The thinned record's minimum is a start only: no digits are asked of it.
   constexpr SolverOptions kRough{.function_tolerance = 1e-2,
                                  .parameter_tolerance = 1e-6,
@@ -252,10 +253,19 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     }
     Look& start = starts.emplace_back(std::move(look));
     if (!options.start.empty()) continue;  // a start that is given is one
-    solver.Solve(start.theta, kRough, scratch);
-    if (!std::isfinite(scratch.sum_of_squares)) continue;
-    start.theta = scratch.theta;
-    start.cost = scratch.sum_of_squares;
+    const auto follow = [&](const std::vector<double>& theta) {
+      solver.Solve(theta, kRough, scratch);
+      if (!(scratch.sum_of_squares < start.cost)) return;
+      start.theta = scratch.theta;
+      start.cost = scratch.sum_of_squares;
+    };
+    follow(start.theta);
+    // A sample that slips under a sharp law shows no way back to a smooth one, under which it does
+    // not.
+    if (shape.fixed || !(start.theta[kShape] < kSmooth)) continue;
+    std::vector<double> smooth = start.theta;
+    smooth[kShape] = std::min(kSmooth, shape.upper);
+    follow(smooth);
   }
   std::ranges::stable_sort(starts, {}, &Look::cost);
   if (starts.size() > most) starts.resize(most);
