@@ -259,8 +259,7 @@ void Course::Add(std::size_t cycle, double value) {
   bins_.push_back(one);
 }
 
-std::optional<CourseDescription> Describe(const Course& course) {
-  if (course.bins().empty()) return std::nullopt;
+CourseDescription Describe(const Course& course) {
   const double mean = LineThrough(course.bins()).level;
   CourseDescription description{.from = mean, .to = mean};
   const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
@@ -327,7 +326,7 @@ void Describe(std::vector<Evolution>& evolutions) {
   std::size_t most = 0;
   for (const Evolution& each : evolutions) most = std::max(most, each.known);
   for (Evolution& each : evolutions) {
-    each.description = *Describe(each.course);
+    each.description = Describe(each.course);
     each.is_of_few = 2 * each.known < most;
     if (!each.is_of_few) continue;
     each.description.changes.clear();
@@ -362,7 +361,8 @@ std::string Headline(std::span<const Evolution> evolutions) {
   return text;
 }
 
-std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions, std::size_t most) {
+std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions) {
+  constexpr std::size_t kMost = 10;
   std::vector<std::pair<double, std::string>> statements;  // with the relative sizes
   for (const Evolution& evolution : evolutions) {
     for (const auto& change : evolution.description.changes) {
@@ -378,15 +378,13 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
     }
   }
   std::ranges::stable_sort(statements, std::greater<>(), &std::pair<double, std::string>::first);
+  if (statements.size() > kMost) {
+    const std::size_t more = statements.size() - (kMost - 1);
+    statements.resize(kMost);
+    statements.back().second = fmt::format("and {} smaller ones, which --json lists", more);
+  }
   std::vector<std::string> lines;
-  const std::size_t shown = statements.size() <= most ? most : most - 1;
-  for (auto& [size, statement] : statements) {
-    if (lines.size() < shown) lines.push_back(std::move(statement));
-  }
-  if (statements.size() > most) {
-    lines.push_back(
-        fmt::format("and {} smaller ones, which --json lists", statements.size() - shown));
-  }
+  for (auto& [size, statement] : statements) lines.push_back(std::move(statement));
   return lines;
 }
 
@@ -430,9 +428,8 @@ io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
     io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number),
                         .x = cycle.record.displacement,
                         .y = cycle.record.force};
-    loop.shade = cycles.size() < 2 ? 0.0
-                                   : static_cast<double>(panel.series.size()) /
-                                         static_cast<double>(cycles.size() - 1);
+    loop.shade = static_cast<double>(panel.series.size()) /
+                 static_cast<double>(std::max<std::size_t>(cycles.size() - 1, 1));
     panel.series.push_back(std::move(loop));
   }
   const report::Units& units = report::UnitsOf(is_torsional);

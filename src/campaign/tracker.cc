@@ -16,21 +16,21 @@ Tracker::Tracker(TrackOptions options, Done done)
 }
 
 void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
-  cycles_.clear();
-  splitter_.Add(samples, lines, cycles_);
-  Take();
+  std::vector<Cycle> cycles;
+  splitter_.Add(samples, lines, cycles);
+  Take(cycles);
 }
 
 std::size_t Tracker::NextFile() {
-  cycles_.clear();
-  const std::size_t left = splitter_.Restart(cycles_);
-  Take();
+  std::vector<Cycle> cycles;
+  const std::size_t left = splitter_.Restart(cycles);
+  Take(cycles);
   return left;
 }
 
-/// Begins to fit the cycles that were split off at last.
-void Tracker::Take() {
-  for (Cycle& cycle : cycles_) {
+/// Begins to fit cycles that were split off.
+void Tracker::Take(std::vector<Cycle>& cycles) {
+  for (Cycle& cycle : cycles) {
     Log(cycle);
     if (fits_++ < options_.skipped) continue;
     batch_.push_back(std::move(cycle));
@@ -73,7 +73,6 @@ void Tracker::Begin() {
   const auto policy =
       options_.threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
   begun_.push_back(std::async(policy, fit));
-  batch_.reserve(kBatch);
 }
 
 void Tracker::Deliver() {

@@ -138,7 +138,7 @@ std::string ToText(const TrackedTest& test, const Json& quantities) {
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
-std::string ToPage(const TrackedTest& test, std::string_view command) {
+std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_view command) {
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   std::string figures;
   std::size_t count = 0;
@@ -157,10 +157,10 @@ std::string ToPage(const TrackedTest& test, std::string_view command) {
                                        changes.empty() ? "steady" : "changed",
                                        campaign::Headline(test.evolutions)) +
                        report::ListHtml(changes)) +
-          report::SectionHtml("Over the test",
-                              report::ListHtml(Facts(test)) +
-                                  report::TableHtml("first and last row of the table of cycles",
-                                                    QuantityRows(test))) +
+          report::SectionHtml(
+              "Over the test",
+              report::ListHtml(Facts(test)) +
+                  report::TableHtml("first and last row of the table of cycles", quantities)) +
           report::SectionHtml("Evolution", report::SideBySide(figures)) +
           report::SectionHtml(
               "What to mind",
@@ -319,7 +319,6 @@ class TrackRun {
 void RunTrack(const TrackCommandOptions& options, Console& console) {
   RequireDistinctFiles(options.fit.files);
   Validate(options.fit.contact);
-  MakeCycleFitOptions(options.fit);
   // A table is the work of hours; a device loses nothing.
   std::error_code ignored;
   if (!options.resume && !options.overwrite &&
@@ -328,10 +327,10 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
   }
   const TrackedTest test = TrackRun(options).Track();
   console.exit_status = test.established() ? kDone : kNotEstablished;
-  if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path, ToPage(test, console.command_line));
-  }
   const Json quantities = QuantityRows(test);
+  if (!options.report_path.empty()) {
+    io::WriteFileAtomically(options.report_path, ToPage(test, quantities, console.command_line));
+  }
   WriteAnswer(console, ToJson(test, quantities), ToText(test, quantities));
 }
 

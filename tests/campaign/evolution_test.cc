@@ -50,7 +50,7 @@ TEST(Headline, SaysTheTestInOneLine) {
 TEST(Describe, StandsForAnUnchangedQuantityByItsMean) {
   Course course;
   for (std::size_t cycle = 1; cycle <= 60; ++cycle) course.Add(cycle, cycle % 2 == 0 ? 0.5 : 0.7);
-  const CourseDescription description = *Describe(course);
+  const CourseDescription description = Describe(course);
   EXPECT_FALSE(description.changed());
   EXPECT_NEAR(description.from, 0.6, 1e-12);
 }
@@ -227,12 +227,12 @@ TEST(Course, MergesBinsByTheirNumbersOfValues) {
 }
 
 TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
-  EXPECT_FALSE(Describe(Course()));
+  EXPECT_FALSE(Describe(Course()).changed());
   Course falling;  // as a run-in: far from any line
   for (std::size_t cycle = 1; cycle <= 30; ++cycle) {
     falling.Add(10 * cycle, 17.6 + 5.5 * std::exp(-static_cast<double>(cycle)));
   }
-  const CourseDescription description = *Describe(falling);
+  const CourseDescription description = Describe(falling);
   EXPECT_EQ(falling.first(), falling.bins().front().value);
   EXPECT_EQ(falling.last(), falling.bins().back().value);
   for (const Change& change : description.changes) {
@@ -245,7 +245,7 @@ TEST(Describe, HardlyEverFindsAChangeInNoise) {
   for (const double phi : {0.0, 0.6}) {
     int found = 0;
     for (int seed = 1; seed <= kCourses; ++seed) {
-      found += Describe(CourseOf(200, static_cast<std::uint64_t>(seed), Level, phi))->changed();
+      found += Describe(CourseOf(200, static_cast<std::uint64_t>(seed), Level, phi)).changed();
     }
     EXPECT_LE(found, kCourses / 20) << phi;
   }
@@ -254,7 +254,7 @@ TEST(Describe, HardlyEverFindsAChangeInNoise) {
 TEST(Describe, FindsAStepWhereItIs) {
   for (const std::size_t cycles : {100U, 400U, 3000U}) {
     const std::size_t at = 2 * cycles / 3;
-    const CourseDescription description = *Describe(
+    const CourseDescription description = Describe(
         CourseOf(cycles, 7, [&](std::size_t cycle) { return cycle < at ? kLevel : 1.1 * kLevel; }));
     ASSERT_THAT(description.changes, SizeIs(1)) << cycles;
     const Change& step = description.changes[0];
@@ -267,7 +267,7 @@ TEST(Describe, FindsAStepWhereItIs) {
 }
 
 TEST(Describe, FindsATrend) {
-  const CourseDescription description = *Describe(CourseOf(300, 3, [](std::size_t cycle) {
+  const CourseDescription description = Describe(CourseOf(300, 3, [](std::size_t cycle) {
     return kLevel * (1 - 0.2 * static_cast<double>(cycle) / 300);
   }));
   ASSERT_THAT(description.changes, SizeIs(1));
@@ -279,13 +279,13 @@ TEST(Describe, FindsATrend) {
 
 TEST(Describe, SaysWhereARunInHasSettled) {
   // Within 5 % of its change after three time constants.
-  const CourseDescription description = *Describe(CourseOf(
+  const CourseDescription description = Describe(CourseOf(
       1000, 5,
       [](std::size_t cycle) { return 0.6 - 0.25 * std::exp(-static_cast<double>(cycle) / 100); },
       0.0, 0.002));
   ASSERT_TRUE(description.settled_at);
   EXPECT_NEAR(static_cast<double>(*description.settled_at), 300.0, 60.0);
-  EXPECT_FALSE(Describe(CourseOf(1000, 5, Level))->settled_at);
+  EXPECT_FALSE(Describe(CourseOf(1000, 5, Level)).settled_at);
 }
 
 // A law of segments misses a curve by more than the scatter, the less of this the more.
@@ -293,7 +293,7 @@ TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
   for (const double noise : {0.0, 0.1, 1.0, 3.0}) {
     for (const std::size_t cycles : {100U, 300U, 3000U}) {
       const double count = static_cast<double>(cycles);
-      const CourseDescription run_in = *Describe(CourseOf(
+      const CourseDescription run_in = Describe(CourseOf(
           cycles, 3,
           [&](std::size_t cycle) {
             return kLevel * (1.5 - 0.5 * std::exp(-10 * static_cast<double>(cycle) / count));
@@ -302,7 +302,7 @@ TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
       ASSERT_THAT(run_in.changes, Not(IsEmpty())) << noise << ' ' << cycles;
       EXPECT_GT(run_in.changes.front().to, 1.3 * kLevel);
       EXPECT_TRUE(run_in.settled_at || noise > 1);
-      const CourseDescription bump = *Describe(CourseOf(
+      const CourseDescription bump = Describe(CourseOf(
           cycles, 3,
           [&](std::size_t cycle) {
             return kLevel *
@@ -323,16 +323,16 @@ TEST(Describe, DoesNotMindOneCycleThatIsOff) {
                                    [&](std::size_t cycle) {
                                      return cycle == off ? kLevel + 20 * kNoise : kLevel;
                                    }))
-                     ->changed())
+                     .changed())
         << off;
   }
 }
 
 TEST(Describe, DoesNotDependOnTheUnit) {
   const auto truth = [](std::size_t cycle) { return cycle <= 70 ? kLevel : 0.8 * kLevel; };
-  const CourseDescription one = *Describe(CourseOf(150, 11, truth));
+  const CourseDescription one = Describe(CourseOf(150, 11, truth));
   for (const double factor : {1e-12, 1e9}) {
-    const CourseDescription other = *Describe(CourseOf(
+    const CourseDescription other = Describe(CourseOf(
         150, 11, [&](std::size_t cycle) { return factor * truth(cycle); }, 0.0, factor * kNoise));
     ASSERT_EQ(other.changes.size(), one.changes.size());
     EXPECT_EQ(other.changes[0].first_cycle, one.changes[0].first_cycle);
@@ -343,14 +343,14 @@ TEST(Describe, DoesNotDependOnTheUnit) {
 TEST(Describe, OfValuesWithoutNoiseIsThatOfTheValues) {
   Course course;
   for (std::size_t cycle = 1; cycle <= 100; ++cycle) course.Add(cycle, cycle <= 60 ? 5.0 : 4.0);
-  const CourseDescription description = *Describe(course);
+  const CourseDescription description = Describe(course);
   ASSERT_THAT(description.changes, SizeIs(1));
   EXPECT_EQ(description.changes[0].first_cycle, 61U);
   EXPECT_NEAR(description.changes[0].from, 5.0, 1e-12);
   EXPECT_NEAR(description.changes[0].to, 4.0, 1e-12);
   Course still;
   for (std::size_t cycle = 1; cycle <= 100; ++cycle) still.Add(cycle, 5.0);
-  EXPECT_FALSE(Describe(still)->changed());
+  EXPECT_FALSE(Describe(still).changed());
 }
 
 }  // namespace

@@ -79,8 +79,7 @@ struct CourseDescription {
 /// up to eight segments. The noise that this is judged by is that of neighbouring values, whatever
 /// the lines miss, but no less than 0.1 % of the values. Steps are between segments, trends
 /// along one by Student's test of its slope. No value is stated that no cycle had.
-/// @returns nothing for a time history without a value
-std::optional<CourseDescription> Describe(const Course& course);
+CourseDescription Describe(const Course& course);
 
 /// Describes a quantity whose time history is reported.
 struct TrackedQuantity {
@@ -116,10 +115,9 @@ void Describe(std::vector<Evolution>& evolutions);
 /// open or of few cycles, then stiffness and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
-/// Returns a sentence for each step and trend with the quantity's name, the largest first, of more
-/// than `most` those and how many more there are.
-std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
-                                          std::size_t most = 10);
+/// Returns a sentence for each step and trend with the quantity's name, the largest first; of more
+/// than ten nine, and how many more there are.
+std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions);
 
 /// Returns a panel for each quantity that has two bins or more, over the number of the cycle,
 /// logarithmic where there are a hundred or more: a line within the least and the greatest of the

@@ -59,7 +59,7 @@ class Tracker {
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
  private:
-  void Take();
+  void Take(std::vector<Cycle>& cycles);
   void Log(const Cycle& cycle);
   void Begin();
   void Deliver();
@@ -67,7 +67,6 @@ class Tracker {
   TrackOptions options_;
   Done done_;
   CycleSplitter splitter_;
-  std::vector<Cycle> cycles_;  // that were split off at last
   std::vector<Cycle> batch_;
   std::size_t fits_ = 0;                                  // made or skipped
   std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
