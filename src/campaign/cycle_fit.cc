@@ -65,19 +65,20 @@ FitOptions OfSteadyCycles(FitOptions options) {
 }
 
 /// Measures the facts, with the ends as turning points where the gate has not found them.
-loop::LoopFacts FactsOf(const loop::Record& record, const FitResult& result) {
+loop::LoopFacts FactsOf(const Cycle& cycle, const FitResult& result) {
+  const loop::Record& record = cycle.record;
   const identification::RecordFit& fitted = result.records.front();
-  if (fitted.facts.closed) return fitted.facts;
+  if (fitted.facts.cycles.size() == cycle.cycles) return fitted.facts;
   std::vector<std::size_t> turns = {0};
   turns.insert(turns.end(), fitted.reversals.begin(), fitted.reversals.end());
   turns.push_back(record.size() - 1);
   return loop::MeasureFacts(record, turns, result.force_sense);
 }
 
-void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
-  if (!std::ranges::all_of(facts.cycles, &loop::CycleFacts::returns)) {
-    fit.flags.emplace_back("not_closed");
-  }
+void FillFacts(const loop::Record& record, const loop::LoopFacts& facts, CycleFit& fit) {
+  constexpr double kReturns = 0.05;  // of the width
+  const double way = record.displacement.back() - record.displacement.front();
+  if (!(std::abs(way) <= kReturns * 2 * facts.amplitude)) fit.flags.emplace_back("not_closed");
   if (!facts.closed || !(facts.energy_per_cycle > 0)) {
     fit.flags.emplace_back("no_loop");
     return;
@@ -86,7 +87,10 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
   fit["peak_force"] = facts.peak_force;
   fit["sliding_amplitude"] = facts.sliding_amplitude;
   fit["half_gap"] = facts.half_gap;
-  fit["energy"] = facts.energy_per_cycle;
+  // Of cycles of several amplitudes the energies are those of all, the other facts of the widest.
+  double energy = 0.0;
+  for (const loop::CycleFacts& cycle : facts.cycles) energy += cycle.energy;
+  fit["energy"] = energy / static_cast<double>(facts.cycles.size());
   fit["energy_ratio"] = facts.energy_ratio;
   // µ_W = W/(4·N·sliding amplitude)
   const double rectangle =
@@ -151,7 +155,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   const identification::RecordFit& fitted = result->records.front();
   if (!fitted.glitches.empty()) fit.flags.emplace_back("glitches");
   if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
-  FillFacts(FactsOf(record, *result), fit);
+  FillFacts(record, FactsOf(cycle, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
   for (const char* name : {"sigma", "alpha", "slip_force", "force_offset"}) {
     FillParameter(*result, name, fit);

@@ -61,6 +61,36 @@ TEST(CycleFitter, KnowsThatACycleBeginsAtATurn) {
   }
 }
 
+TEST(CycleFitter, HasTheEnergyOfAllCyclesFittedTogetherWhateverTheirAmplitudes) {
+  loop::Record record;
+  for (int i = 0; i < 800; ++i) {
+    const double reach = i / 100 % 2 == 0 ? 2.5e-6 : 5e-6;
+    record.displacement.push_back(reach * std::sin(2 * std::numbers::pi * i / 100));
+  }
+  record.force = Respond(Model("mindlin-dahl"), kCycleLaw, record.displacement);
+  for (const std::size_t first : {0U, 100U}) {  // the narrower before the wider, and after it
+    CycleSplitter splitter(0.0, 2);
+    std::vector<Cycle> pairs;
+    loop::Record rest;
+    for (const auto column : {&loop::Record::displacement, &loop::Record::force}) {
+      (rest.*column).assign((record.*column).begin() + first, (record.*column).end());
+    }
+    splitter.Add(rest, LinesOf(rest), pairs);
+    ASSERT_GE(pairs.size(), 2U);
+    for (const Cycle& pair : pairs) {
+      const CycleFit fit = CycleFitter({}).Fit(pair);
+      const std::vector<double>& x = pair.record.displacement;
+      const std::vector<double>& force = pair.record.force;
+      double energy = 0.0;
+      for (std::size_t i = 1; i < x.size(); ++i) {
+        energy += (force[i] + force[i - 1]) / 2 * (x[i] - x[i - 1]);
+      }
+      EXPECT_NEAR(*fit["energy"], energy / 2, 1e-3 * energy) << first;
+      EXPECT_FALSE(HasFlag(fit, "not_closed")) << first;
+    }
+  }
+}
+
 TEST(CycleFitter, HasNoFrictionCoefficientUnderALoadOfTheOtherSign) {
   Cycle cycle = FirstCycle(0.0);
   cycle.record.normal_load.assign(cycle.record.size(), -50.0);

@@ -53,7 +53,8 @@ inline std::size_t PlaceOf(std::string_view column) {
 }
 
 /// Holds the results of one cycle, or of several fitted together, in the units of loop::LoopFacts
-/// and identification::FitResult; facts are the means of the cycles fitted together.
+/// and identification::FitResult; the energy is the mean of the cycles fitted together, and the
+/// other facts are those of the widest of them.
 struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
