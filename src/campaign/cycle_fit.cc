@@ -10,15 +10,12 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <utility>
 #include <vector>
 
-#include "core/refuse.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
@@ -40,25 +37,7 @@ constexpr std::array kFlags = {
     CycleFlag{"glitches", "spikes or dropouts were left out"},
 };
 
-/// Refuses names of parameters that no fit has: a cycle that cannot be fitted is flagged only.
-void RequireParameters(const FitOptions& options) {
-  const auto require = [](const auto& values) {
-    for (const auto& [name, value] : values) {
-      if (identification::TermOfParameter(name) != nullptr) continue;
-      throw InvalidArgument(
-          "parameter " +
-          UnknownAmong(
-              name, identification::Terms() | std::views::transform(&identification::Term::name)));
-    }
-  };
-  require(options.fixed);
-  require(options.start);
-  require(options.bounds);
-  require(options.priors);
-}
-
 FitOptions OfSteadyCycles(FitOptions options) {
-  RequireParameters(options);
   options.preparation.begins_at_turn = true;
   if (!options.initial_state) options.initial_state = models::InitialState::kSteady;
   return options;
@@ -124,6 +103,12 @@ Value CellValue(std::string_view cell) {
 }  // namespace
 
 std::span<const CycleFlag> CycleFlags() { return kFlags; }
+
+void RequireFit(const loop::RecordView& head, const FitOptions& options) {
+  const auto [least, greatest] = std::ranges::minmax(head.force);
+  if (least == greatest) return;
+  identification::Fitter(OfSteadyCycles(options)).Fit(head, identification::Depth::kEstimate);
+}
 
 CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}

@@ -206,6 +206,7 @@ class TrackRun {
     test_.gate = campaign::ChooseGate(head, options.fit);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
     if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
+    campaign::RequireFit(head, options.fit);
     test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     Resume();
     options.skipped = test_.fits;

@@ -216,6 +216,15 @@ TEST(CycleFitter, FlagsWhatIsWrongWithACycle) {
   }
 }
 
+TEST(RequireFit, RefusesOptionsThatNoCycleCanBeFittedWith) {
+  loop::Record head = TestRecord(4);
+  EXPECT_NO_THROW(RequireFit(head, {}));
+  EXPECT_THROW(RequireFit(head, {.fixed = {{"sigma", -1.0}}}), InvalidArgument);
+  EXPECT_THROW(RequireFit(head, {.start = {{"stiffness", 1.0}}}), InvalidArgument);
+  std::ranges::fill(head.force, 0.0);  // the contact is closed later
+  EXPECT_NO_THROW(RequireFit(head, {}));
+}
+
 TEST(CycleFitter, GoesOnAfterACycleThatCannotBeFitted) {
   CycleFitter fitter({});
   std::vector<Cycle> cycles = CyclesOf(TestRecord(4));

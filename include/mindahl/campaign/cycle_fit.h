@@ -86,6 +86,11 @@ struct CycleFlag {
 /// Returns every flag that a cycle may have: not_converged, sigma_open, …
 std::span<const CycleFlag> CycleFlags();
 
+/// Refuses options that no fit of the record takes: a cycle that cannot be fitted is flagged only.
+/// @param head  its first cycles; of one without a force nothing is said
+/// @throws InvalidArgument as Fitter::Fit()
+void RequireFit(const loop::RecordView& head, const identification::FitOptions& options);
+
 /// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at
 /// Depth::kErrors, so that each has the minimum that a fit of it alone has, to the solver's
 /// tolerance, and the standard errors of its noise.
