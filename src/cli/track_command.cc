@@ -188,8 +188,9 @@ class TrackRun {
     test_.log = tracker_->log();
     if (test_.cycles == 0) {
       Refuse(
-          "{}: no whole cycle to fit of turns by more than {:.3g} m: choose another column with "
-          "--displacement, or a smaller --reversal-gate",
+          "{}: no whole cycle: it lasts from one turning point to the next but one, which the ends "
+          "of a file are not, and there are not three by more than {:.3g} m: use mindahl fit for a "
+          "single cycle, another --displacement, or a smaller --reversal-gate",
           fmt::join(test_.files, ", "), test_.gate.gate);
     }
     campaign::Describe(test_.evolutions);
