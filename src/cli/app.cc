@@ -136,6 +136,9 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
     err << fmt::format("{}: {}\n", CommandName(app), why);
     return kBadInput;
   };
+  if (!is_command && !first.empty() && first.front() != '-') {
+    return refuse("command " + UnknownAmong(first, NamesOf(kCommands, &Command::first)));
+  }
   try {
     try {
       app.parse(argc, argv);

@@ -35,7 +35,7 @@ struct BadUsage {
 
 const std::vector<BadUsage> kBadUsage = {
     {"", "subcommand is required"},
-    {"fitt @", "A subcommand is required; see mindahl --help"},
+    {"fitt @", "command 'fitt' is unknown: must be one of fit, simulate, validate, contact,"},
     {"fit @ --stiffness 3", "not expected: --stiffness"},
     {"fit @ --dispacement 3", "not expected: --dispacement"},
     {"contact --waveform sine", "not expected: sine --waveform"},
