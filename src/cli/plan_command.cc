@@ -249,7 +249,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   CLI::Option* const record = expected.Add(
       "--record", options.record, "take law and noise from a fit of this record instead", "FILE");
   AddColumnOptions(command, options.columns);
-  for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
+  for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column",
+                           "--sample-rate", "--encoding"}) {
     command.get_option(name)->needs(record);
   }
   expected.AddQuantity("--rig-stiffness", options.rig_stiffness,

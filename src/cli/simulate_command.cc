@@ -45,6 +45,10 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     return motion;
   }
   models::ExcitationOptions excitation = options.excitation;
+  if (excitation.growth != models::ExcitationOptions().growth &&
+      excitation.waveform != models::Waveform::kGrowingSine) {
+    Refuse("--growth has no effect unless --waveform is growing-sine: leave it out");
+  }
   if (options.lambda.has_value() == options.amplitude.has_value()) {
     Refuse("--lambda or --amplitude, one of the two, must be given (or --path)");
   }

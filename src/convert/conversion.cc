@@ -212,7 +212,10 @@ void RequireOptions(const TargetRow& target, const ConversionOptions& options) {
   }
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
   if (options.normal_load && target.form != Form::kSpring) {
-    throw InputError("--normal-load has no effect unless --to is lammps");
+    throw InputError("--normal-load has no effect unless --to is lammps: leave it out");
+  }
+  if (options.elements != ConversionOptions().elements && target.form != Form::kElements) {
+    throw InputError("--elements has no effect unless --to is iwan: leave it out");
   }
 }
 

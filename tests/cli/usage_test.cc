@@ -151,6 +151,8 @@ const std::vector<BadUsage> kBadUsage = {
     {"simulate --sigma nan --slip-force 1 --lambda 1",
      "--sigma [N/m] = nan is invalid: must be finite and > 0"},
     {"simulate --sigma 2±1 --slip-force 3 --lambda 1", "--sigma"},
+    {"simulate ~ --lambda 1 --growth 2",
+     "--growth has no effect unless --waveform is growing-sine"},
     {"simulate ~ --lambda 1 --noise-force -1", "--noise-force [N] = -1"},
     {"simulate ~ --lambda 1 --samples-per-cycle 3", "--samples-per-cycle: Value 3 not in range"},
     {"simulate ~ --lambda 1 --seed -1", "--seed: Value -1 not in range"},
@@ -167,6 +169,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"convert ~ --amplitude -1 --to dahl", "amplitude [m] = -1"},
     {"convert ~ --amplitude 1 --to lammps --input-lines -", "--normal-load"},
     {"convert ~ --amplitude 1 --to dahl --normal-load 3", "unless --to is lammps"},
+    {"convert ~ --amplitude 1 --to dahl --elements 3", "unless --to is iwan"},
     {"convert ~ --amplitude 1 --to dahl --json - --input-lines -", "give each a file"},
     {"convert ~ --amplitude 1 --to dahl --tolerance little",
      "--tolerance: 'little' is no quantity in -"},
@@ -190,6 +193,8 @@ const std::vector<BadUsage> kBadUsage = {
     {"plan ~ --force [kN]", "--force requires --record"},
     {"plan ~ --time 1", "--time requires --record"},
     {"plan ~ --normal-load-column 1", "--normal-load-column requires --record"},
+    {"plan ~ --sample-rate 100", "--sample-rate requires --record"},
+    {"plan ~ --encoding latin1", "--encoding requires --record"},
 };
 
 TEST(BadUsage, IsRefusedInOneLineThatNamesTheFault) {

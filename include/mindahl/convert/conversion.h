@@ -75,8 +75,8 @@ struct Conversion {
 /// tangents of the virgin curve (MakeIwanElements), of Masing's law at X where the contact is
 /// Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
-/// @throws InvalidArgument for an invalid law or option, InputError for a normal load that the
-///   target does not use
+/// @throws InvalidArgument for an invalid law or option, InputError for a normal load or a number
+///   of elements that the target does not use
 /// Cost: some 10 ms to 0.2 s; of a hundred elements some 0.3 s.
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options);
