@@ -19,6 +19,7 @@ namespace {
 constexpr double kChance = 0.01;         // of a change, or of a trend, where there is none
 constexpr double kSmallestStep = 0.02;   // [-] of the value before it
 constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
+constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
 constexpr double kSettled = 0.05;        // [-] of the whole change
 constexpr std::size_t kLeastBins = 4;    // of a segment: two beyond a line
 constexpr int kDepth = 3;                // up to eight segments
@@ -96,6 +97,11 @@ Noise NoiseOf(Bins bins) {
   const double degrees = static_cast<double>(squares.size()) / 2;
   const double variance = boost::math::statistics::median(squares) / kMedianOfChiSquared;
   return {std::max(variance, exact), degrees};
+}
+
+/// True if a change is worth a statement: by its size, or as it stands out of the scatter.
+bool IsLarge(double change, double smallest, const Noise& noise) {
+  return change >= std::min(smallest, kOfScatter * std::sqrt(noise.variance));
 }
 
 /// A part of a time history that a line describes.
@@ -192,7 +198,8 @@ std::optional<Change> StepBetween(const Segment& before, const Segment& after, c
                                                    after.line.VarianceAt(after.bins.front())));
   step.p_value =
       std::min(1.0, static_cast<double>(places) * PValueOfT(jump / error, noise.degrees));
-  const bool is_large = jump >= kSmallestStep * std::abs(step.from) && jump > width * steepest;
+  const bool is_large =
+      IsLarge(jump, kSmallestStep * std::abs(step.from), noise) && jump > width * steepest;
   return is_large && step.p_value < kChance ? std::optional(step) : std::nullopt;
 }
 
@@ -273,8 +280,8 @@ CourseDescription Describe(const Course& course) {
     Line& line = segment.line;
     const double p_value =
         PValueOfT(line.slope() / std::sqrt(noise.variance / line.spread), noise.degrees);
-    const bool is_large =
-        std::abs(segment.last() - segment.first()) >= kSmallestTrend * std::abs(line.level);
+    const bool is_large = IsLarge(std::abs(segment.last() - segment.first()),
+                                  kSmallestTrend * std::abs(line.level), noise);
     if (!(p_value < kChance && is_large)) line.product = 0;
     std::optional<Change> step;
     if (before != nullptr) step = StepBetween(*before, segment, noise, bins.size());

@@ -242,12 +242,14 @@ TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
 
 TEST(Describe, HardlyEverFindsAChangeInNoise) {
   constexpr int kCourses = 200;
-  for (const double phi : {0.0, 0.6}) {
-    int found = 0;
-    for (int seed = 1; seed <= kCourses; ++seed) {
-      found += Describe(CourseOf(200, static_cast<std::uint64_t>(seed), Level, phi)).changed();
+  for (const double noise : {kNoise, kNoise / 5}) {  // the less, the smaller a change is reported
+    for (const double phi : {0.0, 0.6}) {
+      int found = 0;
+      for (std::uint64_t seed = 1; seed <= kCourses; ++seed) {
+        found += Describe(CourseOf(200, seed, Level, phi, noise)).changed();
+      }
+      EXPECT_LE(found, kCourses / 20) << noise << ' ' << phi;
     }
-    EXPECT_LE(found, kCourses / 20) << phi;
   }
 }
 
@@ -264,6 +266,20 @@ TEST(Describe, FindsAStepWhereItIs) {
     EXPECT_NEAR(step.to / step.from, 1.1, 0.01);
     EXPECT_LT(step.p_value, 1e-6);
   }
+}
+
+TEST(Describe, FindsAStepThatStandsOutOfTheScatterWhateverItsPercentage) {
+  const CourseDescription step = Describe(CourseOf(
+      120, 7, [](std::size_t cycle) { return cycle < 57 ? kLevel : 1.005 * kLevel; }, 0.0, 0.02));
+  ASSERT_THAT(step.changes, SizeIs(1));
+  EXPECT_EQ(step.changes[0].first_cycle, 57U);
+  EXPECT_NEAR(step.changes[0].to / step.changes[0].from, 1.005, 1e-3);
+  const CourseDescription trend = Describe(CourseOf(
+      200, 7,
+      [](std::size_t cycle) { return kLevel * (1 + 0.005 * static_cast<double>(cycle) / 200); },
+      0.0, 0.02));
+  ASSERT_THAT(trend.changes, SizeIs(1));
+  EXPECT_EQ(trend.changes[0].last_cycle, 200U);
 }
 
 TEST(Describe, FindsATrend) {

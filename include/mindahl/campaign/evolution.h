@@ -48,7 +48,8 @@ class Course {
 };
 
 /// A change of a quantity: a trend along straight segments of its time history that go the same
-/// way, 1 % or more each, or a step from one to the next, 2 % or more.
+/// way, 1 % or more each, or a step from one to the next, 2 % or more; or less, if it is four
+/// times the scatter of the values.
 struct Change {
   std::size_t first_cycle = 0;  ///< a step has the first cycle after it in both
   std::size_t last_cycle = 0;
