@@ -119,7 +119,8 @@ struct Segment {
   [[nodiscard]] double last() const { return At(bins.back()); }
 };
 
-/// Appends the segments of these bins.
+/// Appends the segments of these bins. The bin between two segments is in the line of neither, as
+/// what changes within a cycle makes it a mixture of both; the nearer has it.
 void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segments) {
   Line one;
   std::vector<double> squares;  // of the lines through so many bins and through the others
@@ -131,14 +132,14 @@ void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segm
   std::size_t place = 0;
   double least = one.squares();
   for (std::size_t k = bins.size() - 1; depth > 0 && k >= kLeastBins; --k) {
-    others.Add(bins[k]);
     squares[k] += others.squares();
-    if (squares[k] < least && k + kLeastBins <= bins.size()) {
+    others.Add(bins[k]);
+    if (squares[k] < least && k + kLeastBins < bins.size()) {
       least = squares[k];
       place = k;
     }
   }
-  constexpr double kMore = 3;  // a level, a slope and a place
+  constexpr double kMore = 4;  // a level, a slope, a place and the bin there
   const double f = (one.squares() - least) / kMore / noise.variance;
   // Squares of numbers near the largest double overflow.
   const double p_value =
@@ -147,18 +148,31 @@ void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segm
           : std::min(1.0, static_cast<double>(bins.size()) * PValueOfF(f, kMore, noise.degrees));
   if (p_value < kChance) {
     Divide(bins.first(place), noise, depth - 1, segments);
-    Divide(bins.subspan(place), noise, depth - 1, segments);
+    const std::size_t next = segments.size();
+    Divide(bins.subspan(place + 1), noise, depth - 1, segments);
+    Segment& before = segments[next - 1];
+    Segment& after = segments[next];
+    const auto distance = [&](const Segment& segment) {
+      return std::abs(bins[place].value - segment.line.At(bins[place].cycle));
+    };
+    if (distance(before) < distance(after)) {
+      before.bins = {before.bins.data(), before.bins.size() + 1};
+    } else {
+      after.bins = {after.bins.data() - 1, after.bins.size() + 1};
+    }
     return;
   }
   segments.push_back({bins, one});
 }
 
-/// Returns the bins, each with the median of it and its neighbours: one alone
-/// that is off is none.
+/// Returns the bins, each with the median of it and its neighbours, of an end the next two: one
+/// alone that is off is none.
 std::vector<Course::Bin> WithoutOutliers(Bins bins) {
   std::vector<Course::Bin> kept(bins.begin(), bins.end());
-  for (std::size_t i = 1; i + 1 < bins.size(); ++i) {
-    const auto [low, high] = std::minmax(bins[i - 1].value, bins[i + 1].value);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const Course::Bin& one = bins[i == 0 ? 2 : i - 1];
+    const Course::Bin& other = bins[i + 1 == bins.size() ? i - 2 : i + 1];
+    const auto [low, high] = std::minmax(one.value, other.value);
     kept[i].value = std::clamp(bins[i].value, low, high);
   }
   return kept;
@@ -269,8 +283,8 @@ void Course::Add(std::size_t cycle, double value) {
 CourseDescription Describe(const Course& course) {
   const double mean = LineThrough(course.bins()).level;
   CourseDescription description{.from = mean, .to = mean};
+  if (course.bins().size() < 2 * kLeastBins) return description;
   const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
-  if (bins.size() < 2 * kLeastBins) return description;
   const Noise noise = NoiseOf(course.bins());
   std::vector<Segment> segments;
   Divide(bins, noise, kDepth, segments);

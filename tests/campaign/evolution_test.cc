@@ -282,6 +282,24 @@ TEST(Describe, FindsAStepThatStandsOutOfTheScatterWhateverItsPercentage) {
   EXPECT_EQ(trend.changes[0].last_cycle, 200U);
 }
 
+TEST(Describe, FindsOneStepWhereACycleIsAMixtureOfBothLevels) {
+  for (const double share : {0.1, 0.3, 0.6, 0.9}) {
+    for (const double factor : {0.8, 1.1}) {
+      const CourseDescription description = Describe(CourseOf(
+          120, 7,
+          [&](std::size_t cycle) {
+            const double old = cycle < 57 ? 1.0 : cycle == 57 ? share : 0.0;
+            return kLevel * (old + (1 - old) * factor);
+          },
+          0.0, 0.05));
+      ASSERT_THAT(description.changes, SizeIs(1)) << share << ' ' << factor;
+      EXPECT_TRUE(description.changes[0].is_step());
+      EXPECT_EQ(description.changes[0].first_cycle, share < 0.5 ? 57U : 58U) << share;
+      EXPECT_NEAR(description.changes[0].to / description.changes[0].from, factor, 0.001);
+    }
+  }
+}
+
 TEST(Describe, FindsATrend) {
   const CourseDescription description = Describe(CourseOf(300, 3, [](std::size_t cycle) {
     return kLevel * (1 - 0.2 * static_cast<double>(cycle) / 300);
@@ -334,7 +352,7 @@ TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
 }
 
 TEST(Describe, DoesNotMindOneCycleThatIsOff) {
-  for (const std::size_t off : {2U, 50U, 98U}) {
+  for (const std::size_t off : {1U, 2U, 50U, 98U, 100U}) {
     EXPECT_FALSE(Describe(CourseOf(100, 9,
                                    [&](std::size_t cycle) {
                                      return cycle == off ? kLevel + 20 * kNoise : kLevel;

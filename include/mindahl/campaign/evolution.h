@@ -77,9 +77,10 @@ struct CourseDescription {
 
 /// Divides a time history into straight segments: in two where the F test of two lines against one
 /// rejects the one with a chance below 1 %, corrected for the number of places; each part likewise,
-/// up to eight segments. The noise that this is judged by is that of neighbouring values, whatever
-/// the lines miss, but no less than 0.1 % of the values. Steps are between segments, trends
-/// along one by Student's test of its slope. No value is stated that no cycle had.
+/// up to eight segments. The bin between two is in neither line: it may hold the values of both.
+/// The noise that this is judged by is that of neighbouring values, whatever the lines miss, but no
+/// less than 0.1 % of the values. Steps are between segments, trends along one by Student's test of
+/// its slope. No value is stated that no cycle had.
 CourseDescription Describe(const Course& course);
 
 /// Describes a quantity whose time history is reported.
