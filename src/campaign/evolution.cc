@@ -22,6 +22,7 @@ constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
 constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
 constexpr double kSettled = 0.05;        // [-] of the whole change
 constexpr std::size_t kLeastBins = 4;    // of a segment: two beyond a line
+constexpr std::size_t kOfAnEnd = 3;      // bins or cycles that show how a test begins or ends
 constexpr int kDepth = 3;                // up to eight segments
 
 using Bins = std::span<const Course::Bin>;
@@ -312,7 +313,6 @@ CourseDescription Describe(const Course& course) {
   }
   if (!description.changed()) return description;
   description.settled_at = SettledAt(segments);
-  constexpr std::size_t kOfAnEnd = 3;
   description.from = LineThrough(course.bins().first(kOfAnEnd)).level;
   description.to = LineThrough(course.bins().last(kOfAnEnd)).level;
   return description;
@@ -345,14 +345,21 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
 void Describe(std::vector<Evolution>& evolutions) {
   std::erase_if(evolutions, [](const Evolution& each) { return each.course.bins().empty(); });
   std::size_t most = 0;
-  for (const Evolution& each : evolutions) most = std::max(most, each.known);
+  std::size_t last = 0;
+  for (const Evolution& each : evolutions) {
+    most = std::max(most, each.known);
+    last = std::max(last, each.course.bins().back().last_cycle);
+  }
   for (Evolution& each : evolutions) {
     each.description = Describe(each.course);
-    each.is_of_few = 2 * each.known < most;
-    if (!each.is_of_few) continue;
+    const bool is_of_few = 2 * each.known < most;
+    const std::size_t three_rows = kOfAnEnd * last / most;
+    each.is_of_whole_test = !is_of_few && each.course.bins().back().last_cycle + three_rows > last;
+    if (!is_of_few) continue;
     each.description.changes.clear();
     each.description.settled_at.reset();
   }
+  std::ranges::stable_partition(evolutions, &Evolution::is_of_whole_test);
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {
@@ -362,7 +369,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
   for (const Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const CourseDescription& course = evolution.description;
-    if (quantity.symbol.empty() || evolution.is_of_few) continue;
+    if (quantity.symbol.empty() || !evolution.is_of_whole_test) continue;
     const bool is_force = quantity.name == "friction_coefficient" ||
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;

@@ -170,6 +170,23 @@ TEST(Headline, IsOfTheHalfGapWhereFewCyclesDetermineTheSlipForce) {
   EXPECT_THAT(ChangeStatements(evolutions), IsEmpty());
 }
 
+TEST(Headline, IsOfTheHalfGapWhereASpecimenBreaks) {
+  std::vector<Evolution> evolutions = BeginEvolutions(false);
+  CycleFit fit;
+  for (fit.number = 1; fit.number <= 100; ++fit.number) {
+    const bool is_broken = fit.number > 80;
+    fit["slip_force"] = 60.0;
+    fit["sigma"] = 5e7;
+    fit["half_gap"] = is_broken ? 0.01 : 50.0;
+    fit.flags = is_broken ? std::vector<std::string>{"slip_force_open", "sigma_open"}
+                          : std::vector<std::string>{};
+    AddTo(evolutions, fit);
+  }
+  Describe(evolutions);
+  EXPECT_EQ(Headline(evolutions), "half gap 50.0 → 0.0 N, settled at cycle 81");
+  EXPECT_EQ(EvolutionPanels(evolutions).front().y_label, "half_gap [N]");
+}
+
 // ---
 // How a course is described.
 

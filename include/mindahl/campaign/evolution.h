@@ -97,9 +97,9 @@ struct Evolution {
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
-  /// True if fewer than half as many cycles determine this quantity as determine the
-  /// best-determined one; its changes are then not reported.
-  bool is_of_few = false;
+  /// True if the quantity stands for the test: one of the last three cycles determines it, as one
+  /// of a specimen that broke does not, and at least half as many as the best-determined one.
+  bool is_of_whole_test = true;
 };
 
 /// Returns the evolutions of all of them before the first cycle.
@@ -109,12 +109,13 @@ std::vector<Evolution> BeginEvolutions(bool is_torsional);
 /// that did not converge, nor of a quantity that it leaves open.
 void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 
-/// Describes those that have a value, and removes the others; no changes of one that is of few.
+/// Describes those that have a value, those of the whole test first, and removes the others; no
+/// changes of one that fewer than half as many cycles determine as the best-determined one.
 void Describe(std::vector<Evolution>& evolutions);
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
 /// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
-/// open or of few cycles, then stiffness and contact radius.
+/// open or not of the whole test, then stiffness and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, the largest first; of more
