@@ -13,6 +13,15 @@ namespace mindahl::io {
 /// U+FFFD.
 std::string HtmlText(std::string_view text);
 
+/// The style of the elements of a drawing but for their colours, which a page and a file choose.
+inline constexpr std::string_view kShapes =
+    ".grid,.axis,.mark,.line,.dots,.marker{fill:none}"
+    ".axis{stroke-width:1.2}.mark{stroke-width:1.3;stroke-dasharray:5 4}"
+    ".line,.dots,.marker{stroke:currentColor}"
+    ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
+    ".dots,.marker{stroke-width:3.2;stroke-linecap:round}.marker{stroke-width:7}"
+    ".area{fill:currentColor;fill-opacity:.22}.line.more{stroke-dasharray:10 5}\n";
+
 /// Elements of SVG, whose colours are classes of a style, and the height [px] that they fill.
 struct Drawing {
   std::string elements;

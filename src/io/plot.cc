@@ -23,12 +23,7 @@ namespace {
 // readers too; shades go from early, dark, to late.
 constexpr std::string_view kStyle =
     "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
-    ".grid,.axis,.mark,.line,.dots,.marker{fill:none}.grid{stroke:#e4e4e4}"
-    ".axis{stroke:#444;stroke-width:1.2}.mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
-    ".line,.dots,.marker{stroke:currentColor}"
-    ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
-    ".dots,.marker{stroke-width:3.2;stroke-linecap:round}.marker{stroke-width:7}"
-    ".area{fill:currentColor;fill-opacity:.22}.line.more{stroke-dasharray:10 5}"
+    ".grid{stroke:#e4e4e4}.axis,.mark{stroke:#444}"
     ".s0{color:#c2334a}.s1{color:#2f6ea5}.s2{color:#3a9d6e}"
     ".s3{color:#8d6bb1}.s4{color:#e09f3e}.s5{color:#5f6b76}"
     ".h0{color:#440154}.h1{color:#46327e}.h2{color:#365c8d}.h3{color:#277f8e}"
@@ -235,9 +230,9 @@ std::string SvgOf(const Plot& plot) {
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0} {1:.0f}\">\n<style>{2}</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{3}</svg>\n",
-      kWidth + 2 * kEdge, top, kStyle, elements);
+      "viewBox=\"0 0 {0} {1:.0f}\">\n<style>{2}{3}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{4}</svg>\n",
+      kWidth + 2 * kEdge, top, kShapes, kStyle, elements);
 }
 
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {

@@ -26,7 +26,7 @@ std::string PageHtml(std::string_view title, std::string_view body) {
 <link rel="icon" href="data:,">
 <title>{}</title>
 <style>
-{}</style>
+{}{}</style>
 </head>
 <body>
 <header><h1>{}</h1></header>
@@ -35,7 +35,7 @@ std::string PageHtml(std::string_view title, std::string_view body) {
 </body>
 </html>
 )",
-                     HtmlText(title), kStyle, HtmlText(title), body);
+                     HtmlText(title), io::kShapes, kStyle, HtmlText(title), body);
 }
 
 std::string SectionHtml(std::string_view heading, const std::string& body) {
