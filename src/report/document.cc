@@ -222,8 +222,6 @@ Json DocumentOf(const Report& report) {
     reversals += record.reversals.size();
   }
   Json document = {
-      {"schema", "mindahl.fit/2"},
-      {"version", Version()},
       {"input",
        {{"files", report.files()},
         {"columns",
@@ -272,7 +270,7 @@ Json DocumentOf(const Report& report) {
   return document;
 }
 
-std::string ToJson(const Report& report) { return Dump(DocumentOf(report)); }
+std::string ToJson(const Report& report) { return Document("mindahl.fit/2", DocumentOf(report)); }
 
 Json ComparedModels(const Report& report) {
   std::vector<identification::ModelScore> scores = report.compared;

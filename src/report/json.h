@@ -68,7 +68,7 @@ std::string TableHtml(std::string_view caption, const Json& rows);
 
 // --- the JSON of a fit, from which details of the text and of the page are made too
 
-/// Returns the JSON that ToJson() writes.
+/// Returns the members of the document that ToJson() writes.
 Json DocumentOf(const Report& report);
 
 /// Returns a row for each model that was compared and converged, the best first.

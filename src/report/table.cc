@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <ranges>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,25 +19,29 @@ namespace mindahl::report {
 
 namespace {
 
-using Cells = std::vector<std::pair<std::string, Json>>;
+struct Table {
+  std::vector<std::string> names = {};  // of the columns: members that not every row has come last
+  std::vector<std::vector<Json>> rows = {};
+};
 
-std::vector<Cells> RowsOf(const Json& rows) {
-  std::vector<Cells> all;
+Table TableOf(const Json& rows) {
+  Table table;
   for (const auto& [key, row] : rows.items()) {
-    Cells& cells = all.emplace_back();
-    if (rows.is_object()) cells.emplace_back("", key);
+    std::vector<std::string> names;
+    std::vector<Json>& cells = table.rows.emplace_back();
+    const auto add = [&](const std::string& name, const Json& cell) {
+      names.push_back(name);
+      cells.push_back(cell);
+    };
+    if (rows.is_object()) add("", key);
     for (const auto& [name, value] : row.items()) {
-      if (value.is_array()) continue;
-      if (!value.is_object()) {
-        cells.emplace_back(name, value);
-        continue;
-      }
-      for (const auto& [inner, cell] : value.items()) {
-        cells.emplace_back(fmt::format("{}\n{}", name, inner), cell);
-      }
+      if (!value.is_structured()) add(name, value);
+      if (!value.is_object()) continue;
+      for (const auto& [inner, cell] : value.items()) add(name + '\n' + inner, cell);
     }
+    if (names.size() > table.names.size()) table.names = std::move(names);
   }
-  return all;
+  return table;
 }
 
 std::string CellCsv(const Json& value) {
@@ -57,18 +63,16 @@ std::string CellText(const Json& value, int digits) {
 }
 
 std::string TableText(const Json& rows, int digits) {
-  const std::vector<Cells> all = RowsOf(rows);
-  if (all.empty()) return "";
-  // Members that not every row has come last.
-  const Cells& longest = *std::ranges::max_element(all, {}, &Cells::size);
-  std::vector<std::string> lines(all.size() + 1);
-  for (std::size_t c = 0; c < longest.size(); ++c) {
-    std::vector<std::string> column = {longest[c].first};
+  const Table table = TableOf(rows);
+  if (table.rows.empty()) return "";
+  std::vector<std::string> lines(table.rows.size() + 1);
+  for (std::size_t c = 0; c < table.names.size(); ++c) {
+    std::vector<std::string> column = {table.names[c]};
     std::ranges::replace(column[0], '\n', ' ');
     bool is_right = false;
-    for (const Cells& cells : all) {
-      column.push_back(c < cells.size() ? CellText(cells[c].second, digits) : "");
-      is_right = is_right || (c < cells.size() && cells[c].second.is_number());
+    for (const std::vector<Json>& cells : table.rows) {
+      column.push_back(c < cells.size() ? CellText(cells[c], digits) : "");
+      is_right = is_right || (c < cells.size() && cells[c].is_number());
     }
     const std::size_t width = CharactersIn(*std::ranges::max_element(column, {}, CharactersIn));
     for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -85,34 +89,22 @@ std::string TableText(const Json& rows, int digits) {
 }
 
 std::string TableCsv(const Json& rows) {
-  std::string text;
-  for (const Cells& cells : RowsOf(rows)) {
-    std::vector<std::string> names;
-    std::vector<std::string> line;
-    for (const auto& [name, value] : cells) {
-      names.push_back(name);
-      line.push_back(CellCsv(value));
-    }
-    if (text.empty()) text += fmt::format("{}\n", fmt::join(names, ","));
-    text += fmt::format("{}\n", fmt::join(line, ","));
+  const Table table = TableOf(rows);
+  std::string text = table.rows.empty() ? "" : fmt::format("{}\n", fmt::join(table.names, ","));
+  for (const std::vector<Json>& cells : table.rows) {
+    text += fmt::format("{}\n", fmt::join(cells | std::views::transform(CellCsv), ","));
   }
   return text;
 }
 
 std::string TableHtml(std::string_view caption, const Json& rows) {
-  std::vector<std::string> names;
+  const Table table = TableOf(rows);
   std::vector<TableLine> lines;
-  for (const Cells& cells : RowsOf(rows)) {
-    std::vector<std::string> texts;
-    for (const auto& [name, value] : cells) {
-      if (lines.empty()) names.push_back(name);
-      texts.push_back(CellText(value));
-    }
-    const std::string head = std::exchange(texts.front(), "");
-    texts.erase(texts.begin());
-    lines.push_back({head, std::move(texts)});
+  for (const std::vector<Json>& cells : table.rows) {
+    TableLine& line = lines.emplace_back(CellText(cells.front()));
+    for (const Json& cell : std::span(cells).subspan(1)) line.cells.push_back(CellText(cell));
   }
-  return TableHtml(caption, names, lines);
+  return TableHtml(caption, table.names, lines);
 }
 
 std::string ResidualsCsv(const Report& report) {
