@@ -101,21 +101,20 @@ class OptionGroup {
   }
   /// Adds an option that takes one of some words.
   CLI::Option* AddWord(const std::string& option, std::string& word,
-                       const std::vector<std::string_view>& words, const std::string& help) const {
-    return AddShown(option, word, help)
-        ->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+                       const std::vector<std::string>& words, const std::string& help) const {
+    return AddShown(option, word, help)->check(CLI::IsMember(words));
   }
   /// Adds an option whose words stand for values, the first for the one that it has.
   template <typename Value>
   CLI::Option* AddChoice(const std::string& option, Value& target,
                          std::vector<std::pair<std::string, Value>> choices,
                          const std::string& help) const {
-    const auto text = std::make_shared<std::string>(choices.front().first);
-    return AddWord(option, *text, NamesOf(choices, &std::pair<std::string, Value>::first), help)
-        ->each([text, &target, choices](const std::string& word) {
-          const auto named = [&](const auto& choice) { return choice.first == word; };
-          target = std::ranges::find_if(choices, named)->second;
-        });
+    constexpr auto kName = &std::pair<std::string, Value>::first;
+    const auto read = [&target, choices](const std::string& word) {
+      target = std::ranges::find(choices, word, kName)->second;
+    };
+    const std::vector<std::string> names = NamesOf(choices, kName);
+    return AddRead(option, read, help, "")->default_str(names.front())->check(CLI::IsMember(names));
   }
   /// Adds an option whose text, or whose texts, a function reads.
   template <typename Text = std::string>
@@ -138,7 +137,6 @@ class OptionGroup {
     const CLI::Validator is_one = CLI::IsMember({"true", "false"}).description("");
     return Grouped(command_.add_flag(option, value, help)->check(is_one), "");
   }
-  /// Adds --json, where the answer goes for scripts.
   CLI::Option* AddJson(Console& console) const {
     return Add("--json", console.json_path, "answer as JSON; - for standard output alone", "PATH");
   }
@@ -174,7 +172,6 @@ contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_v
 /// --friction where it is no result, each with a standard uncertainty.
 void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction = false);
 
-/// Adds --sigma, --alpha and --slip-force.
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
 
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where

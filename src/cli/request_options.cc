@@ -100,14 +100,6 @@ void ReadSelection(std::string_view text, std::string_view option, FitRequest& r
   }
 }
 
-std::string DescribeModels() {
-  std::string text = "law of the friction; auto: mindlin-dahl or dahl, by the record";
-  for (const models::FrictionModel& model : models::FrictionModels()) {
-    text += fmt::format("\n{}: {}", model.name, model.title);
-  }
-  return text;
-}
-
 std::string DescribeTerms() {
   std::string text =
       "terms that are fitted in addition to the law; auto: those that the\nrecord requires. A "
@@ -234,10 +226,12 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
   identification::FitOptions& fit = options.fit;
   std::vector<std::pair<std::string, const models::FrictionModel*>> models = {{"auto", nullptr}};
+  std::string titles = "law of the friction; auto: mindlin-dahl or dahl, by the record";
   for (const models::FrictionModel& model : models::FrictionModels()) {
     models.emplace_back(model.name, &model);
+    titles += fmt::format("\n{}: {}", model.name, model.title);
   }
-  group.AddChoice("--model", fit.model, std::move(models), DescribeModels());
+  group.AddChoice("--model", fit.model, std::move(models), titles);
   group.AddFlag("--compare", options.compare,
                 "list all models, with and without a rig, by AICc and held-out cycles");
   group.AddChoice("--initial-state", fit.initial_state,

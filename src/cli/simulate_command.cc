@@ -137,8 +137,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
        "    --path path.csv --displacement \"[um]\""},
       &RunSimulate);
   const OptionGroup plain(command, kPlainGroup);
-  std::vector<std::string_view> models = NamesOf(models::FrictionModels(), &FrictionModel::name);
-  models.push_back(models::kSimplifiedDahl);
+  std::vector<std::string> models = NamesOf(models::FrictionModels(), &FrictionModel::name);
+  models.emplace_back(models::kSimplifiedDahl);
   plain.AddWord("--model", options.model, models, "friction model");
   AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   AddContactOptions(command, options.law.contact, /*has_friction=*/true);

@@ -71,10 +71,9 @@ inline std::vector<std::string> LinesOf(const std::vector<std::string_view>& wor
 
 /// Returns the names of the rows of a table.
 template <typename Rows, typename Member>
-std::vector<std::string_view> NamesOf(const Rows& rows, Member name) {
-  std::vector<std::string_view> names;
-  names.reserve(std::size(rows));
-  for (const auto& row : rows) names.push_back(row.*name);
+std::vector<std::string> NamesOf(const Rows& rows, Member name) {
+  std::vector<std::string> names;
+  for (const auto& row : rows) names.emplace_back(row.*name);
   return names;
 }
 
