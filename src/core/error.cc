@@ -15,15 +15,11 @@ void RequireFinite(std::string_view quantity, double value) {
 }
 
 void RequirePositive(std::string_view quantity, double value) {
-  if (!(std::isfinite(value) && value > 0)) {
-    ThrowInvalid(quantity, value, "must be finite and > 0");
-  }
+  if (!(value > 0) || std::isinf(value)) ThrowInvalid(quantity, value, "must be finite and > 0");
 }
 
 void RequireNonNegative(std::string_view quantity, double value) {
-  if (!(std::isfinite(value) && value >= 0)) {
-    ThrowInvalid(quantity, value, "must be finite and >= 0");
-  }
+  if (!(value >= 0) || std::isinf(value)) ThrowInvalid(quantity, value, "must be finite and >= 0");
 }
 
 void RequireSameSize(std::string_view first, std::size_t first_size, std::string_view second,

@@ -10,8 +10,6 @@
 #include <cstring>
 #include <utility>
 
-#include "mindahl/core/error.h"
-
 namespace mindahl::io {
 namespace {
 

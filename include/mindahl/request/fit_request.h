@@ -2,12 +2,10 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/loop/preparation.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/contact_request.h"
 
