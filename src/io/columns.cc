@@ -61,8 +61,7 @@ bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherU
 std::string WordsIn(std::string_view name) {
   std::string words = " ";
   for (std::size_t k = 0; k < name.size(); ++k) {
-    const bool is_cut =
-        k > 0 && IsSmall(name[k - 1]) && IsCapital(name[k]) && name.substr(k - 1, 2) != "kN";
+    const bool is_cut = k > 0 && IsSmall(name[k - 1]) && IsCapital(name[k]);
     if ((is_cut || !IsLetter(name[k])) && words.back() != ' ') words += ' ';
     if (IsLetter(name[k])) words += name[k];
   }

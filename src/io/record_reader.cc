@@ -84,19 +84,19 @@ class RecordBuilder {
   /// where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Fill(Samples& samples, const CsvTable& table) {
-    std::vector<double*> values;  // of the quantities
-    for (const Quantity& of : quantities_) {
-      (samples.*RulesOf(of.role).values).resize(table.rows());
-      values.push_back((samples.*RulesOf(of.role).values).data());
-    }
+    const auto resize = [&](std::size_t size) {
+      for (const Quantity& of : quantities_) (samples.*RulesOf(of.role).values).resize(size);
+    };
+    resize(table.rows());
     LeftOutRows& left_out = file_.left_out;
     std::string refusal;
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
       const std::size_t kept = samples.lines.size();
       bool is_whole = true;
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        values[k][kept] = quantities_[k].unit.ToSi(quantities_[k].ValueIn(table, row));
-        is_whole = is_whole && std::isfinite(values[k][kept]);
+      for (const Quantity& of : quantities_) {
+        double& value = (samples.*RulesOf(of.role).values)[kept];
+        value = of.unit.ToSi(of.ValueIn(table, row));
+        is_whole = is_whole && std::isfinite(value);
       }
       if (is_whole && (!file_.time || samples.time[kept] >= last_time_)) {
         if (file_.time) last_time_ = samples.time[kept];
@@ -112,9 +112,7 @@ class RecordBuilder {
         left_out.fault = fault;
       }
     }
-    for (const Quantity& of : quantities_) {
-      (samples.*RulesOf(of.role).values).resize(samples.lines.size());
-    }
+    resize(samples.lines.size());
     // One in a hundred, rounded up from a hundred on.
     constexpr std::size_t kOneIn = 100;
     const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;

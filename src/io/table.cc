@@ -364,7 +364,6 @@ bool TableReader::Read() {
     if (!is_number && (IsBlankOrComment(row) || is_blank() || IsText(row))) continue;
     EndText();
     ReadRow(row);
-    front_ = front;
   }
   if (is_end) EndText();
   return !is_end;
@@ -450,11 +449,8 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
 bool TableReader::IsText(std::string_view row) {
   if (row == layout_.names_row) text_fault_.clear();
   if (row == layout_.names_row || row == layout_.units_row) return true;
-  // Rows with a label begin alike.
-  if (IsLetter(row.front()) && row.front() == front_) return false;
   CellCursor cells(row, layout_.delimiter);
   for (std::size_t k = 0; k < layout_.text_column && cells.has_next(); ++k) cells.Take();
-  if (layout_.text_column == table_.columns.size()) return false;
   const std::string_view cell = cells.has_next() ? cells.Take() : std::string_view();
   if (ReadCell(cell, layout_.decimal_mark).kind != Cell::Kind::kText) return false;
   if (!text_fault_.empty()) return true;

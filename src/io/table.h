@@ -84,7 +84,6 @@ class TableReader {
   Layout layout_;
   CsvTable table_;
   std::size_t line_ = 0;
-  char front_ = '\0';  // of the last row
   // The fault and the line of the first text since the last row of numbers, unless it is a header.
   std::string text_fault_;
   std::size_t text_line_ = 0;
