@@ -39,9 +39,7 @@ struct Plan {
 /// Takes law and noise from a fit of a record by Masing's law; where it does not identify α, with
 /// Mindlin's.
 void TakeRecord(const PlanOptions& options, Plan& plan) {
-  if (IsAnythingGiven(options.law) || options.law.alpha) {
-    Refuse("--record excludes --sigma, --alpha and --slip-force");
-  }
+  if (IsAnythingGiven(options.law)) Refuse("--record excludes --sigma, --alpha and --slip-force");
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
   plan.notes = file.notes;
   identification::FitOptions fit_options;

@@ -130,8 +130,7 @@ io::Plot ToPlot(const Json& excitations) {
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  const bool is_contact_given = IsAnythingGiven(options.law) || options.law.alpha;
-  const BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
+  const BranchLaw law = IsAnythingGiven(options.law) ? ResolveLaw(options.law) : PaperContact();
   const Json excitations = MeasureAll(options, law);
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(excitations), options.plot);

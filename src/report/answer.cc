@@ -39,9 +39,7 @@ bool IsOfLaw(std::string_view parameter) {
 
 /// Returns "half gap" of "half_gap".
 std::string WithBlanks(std::string_view name) {
-  std::string text(name);
-  std::ranges::replace(text, '_', ' ');
-  return text;
+  return boost::replace_all_copy(std::string(name), "_", " ");
 }
 
 std::string CauseText(const identification::Cause& cause) {

@@ -29,13 +29,13 @@ std::string LabelOf(const Report& report, std::size_t r) {
   return NameOf({&report.records[r].name, 1});
 }
 
-std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) {
+std::string LinesHtml(const std::vector<Line>& lines) {
   std::vector<TableLine> rows;
   for (const Line& line : lines) {
     if (line.label == "next" || line.label == "misfit") continue;  // they have places of their own
     rows.push_back({line.label, {line.text}, line.judgement});
   }
-  return TableHtml(caption, {}, rows);
+  return TableHtml("", {}, rows);
 }
 
 /// Returns the command that takes the next step.
@@ -180,11 +180,11 @@ std::string ToPage(const Report& report, std::string_view command) {
                      "Fitted less measured over the same axis. A band without shape is noise.",
                      figure.panels[1]),
           IntervalsHtml(report), NextHtml(report, command),
-          SectionHtml("Answer", LinesHtml("", AnswerLines(report)) +
+          SectionHtml("Answer", LinesHtml(AnswerLines(report)) +
                                     TableHtml(fmt::format("models compared, rms in {}",
                                                           report.units.response),
                                               ComparedModels(report))),
-          SectionHtml("Details, in SI units", LinesHtml("", DetailLines(report))),
+          SectionHtml("Details, in SI units", LinesHtml(DetailLines(report))),
           ProvenanceHtml(command)));
 }
 

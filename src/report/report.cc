@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 #include "report/statements.h"
@@ -194,12 +195,7 @@ std::string WhatToCheck(const Report& report) {
 
 }  // namespace
 
-std::vector<std::string> Report::files() const {
-  std::vector<std::string> names;
-  names.reserve(records.size());
-  for (const io::RecordFile& record : records) names.push_back(record.name);
-  return names;
-}
+std::vector<std::string> Report::files() const { return NamesOf(records, &io::RecordFile::name); }
 
 const ContactQuantity* Report::Find(std::string_view quantity) const {
   const auto found = std::ranges::find(contact, quantity, &ContactQuantity::name);

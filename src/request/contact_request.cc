@@ -45,7 +45,7 @@ void Validate(const ContactOptions& options, std::size_t records) {
 }
 
 bool IsAnythingGiven(const LawRequest& request) {
-  return request.sigma || request.slip_force || IsAnythingGiven(request.contact);
+  return request.sigma || request.alpha || request.slip_force || IsAnythingGiven(request.contact);
 }
 
 BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,

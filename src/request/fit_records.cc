@@ -142,8 +142,7 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
                        std::span<const Record> records) {
   const bool chooses_law = request.fit.model == nullptr;
   FitOptions symmetric = options;
-  std::erase(symmetric.terms, "asymmetry");
-  std::size_t of_asymmetry = options.terms.size() - symmetric.terms.size();
+  std::size_t of_asymmetry = std::erase(symmetric.terms, "asymmetry");
   const auto erase = [&](auto& values) { of_asymmetry += values.erase("asymmetry"); };
   erase(symmetric.fixed);
   erase(symmetric.priors);

@@ -39,7 +39,7 @@ struct LawRequest {
   ContactOptions contact{};
 };
 
-/// True if a parameter other than α, or anything of a contact, was given.
+/// True if a parameter, or anything of a contact, was given.
 bool IsAnythingGiven(const LawRequest& request);
 
 /// Returns the law; α is 1/3 where it is not given.
