@@ -228,10 +228,15 @@ void AddTerm(const std::string& name, const Record& record, FitOptions& options,
   step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
-/// Adds the law that was fitted to a step, where the program chose it: with the step another one
-/// may be the better one, and miss otherwise.
-void KeepLaw(const FitRequest& request, const FitOptions& options, report::NextStep& step) {
-  if (request.fit.model == nullptr) step.options += " --model " + std::string(options.model->name);
+/// Fits with the options of a step.
+/// @returns false where the record does not determine it, or the options are not those of its fit
+bool TryFit(std::span<const Record> records, const FitOptions& tried, FitResult& found) {
+  try {
+    found = identification::Fit(records, tried, identification::Depth::kIntervals);
+  } catch (const InvalidArgument&) {
+    return false;
+  }
+  return found.converged;
 }
 
 /// Fits the displacement in place of the force where an encoder reads it in few steps, and returns
@@ -244,23 +249,16 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   FitOptions tried = MakeFitOptions(request);
   tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
-  try {
-    found = identification::Fit(records, tried, identification::Depth::kIntervals);
-  } catch (const InvalidArgument&) {
-    return std::nullopt;  // the options are those of a fit of the force
-  }
   constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
-  if (!found.converged || found.adequacy.verdict != AdequacyVerdict::kAdequate ||
+  if (!TryFit(records, tried, found) || found.adequacy.verdict != AdequacyVerdict::kAdequate ||
       found.rms > kOfSteps * found.EncoderStep()) {
     return std::nullopt;
   }
-  report::NextStep step{.text = "steps of the displacement as its noise",
-                        .options = "--noise-in displacement",
-                        .misfit_before = *fit.adequacy.misfit_over_half_gap,
-                        .misfit_after = found.adequacy.misfit / found.MisfitScale(),
-                        .is_over_amplitude = true};
-  KeepLaw(request, options, step);
-  return step;
+  return report::NextStep{.text = "steps of the displacement as its noise",
+                          .options = "--noise-in displacement",
+                          .misfit_before = *fit.adequacy.misfit_over_half_gap,
+                          .misfit_after = found.adequacy.misfit / found.MisfitScale(),
+                          .is_over_amplitude = true};
 }
 
 /// Fits the record again with the term that explains most of what the law misses, where the law
@@ -290,17 +288,10 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     FitOptions tried = options;
     report::NextStep step;
     AddTerm(name, records.front(), tried, step);
-    KeepLaw(request, options, step);
-    try {
-      found = identification::Fit(records, tried, identification::Depth::kIntervals);
-    } catch (const InvalidArgument&) {
-      continue;  // the record does not determine it
-    }
+    if (!TryFit(records, tried, found)) continue;
     const std::optional<double> after = found.adequacy.misfit_over_half_gap;
-    if (!found.converged || !after || LosesSlipForce(fit, found, tried) ||
-        *after > (1 - options.thresholds.advised_gain) * *before) {
-      continue;
-    }
+    if (!after || *after > (1 - options.thresholds.advised_gain) * *before) continue;
+    if (LosesSlipForce(fit, found, tried)) continue;
     // A rig that cannot be told from the law is to be measured.
     const bool is_confounded =
         name == "rig_stiffness" && fit.FindFinding("shape_or_rig") != nullptr;
@@ -390,6 +381,10 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (!request.chooses_terms) {
     made.next =
         FindNextStep(request, asked.options, records, !made.left_out.empty(), asked.fit, found);
+  }
+  // With the step another law may be the better one, and miss otherwise.
+  if (made.next && request.fit.model == nullptr) {
+    made.next->options += fmt::format(" --model {}", asked.options.model->name);
   }
   const bool is_described = made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion = FindDisproportion(asked.fit);
