@@ -136,8 +136,6 @@ Plan MakePlan(const PlanOptions& options) {
   return plan;
 }
 
-constexpr std::array kShown = {"sigma", "alpha", "slip_force"};
-
 /// Returns the standard error over the value, of a pure number as it is; empty beyond 1, where the
 /// bound determines little.
 std::optional<double> ErrorOf(const ExpectedFit& fit, std::string_view parameter) {
@@ -150,7 +148,8 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, std::string_view parameter
 Json ErrorRows(const Plan& plan) {
   return report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
     Json row = {{"X [m]", fit.protocol.amplitude}, {"X/slip", fit.protocol.amplitude / plan.slip}};
-    for (const char* parameter : kShown) row[parameter] = NumberOrNull(ErrorOf(fit, parameter));
+    for (const char* parameter : report::kLawParameters)
+      row[parameter] = NumberOrNull(ErrorOf(fit, parameter));
     return row;
   });
 }
@@ -207,7 +206,7 @@ io::Plot ToPlot(const Plan& plan) {
                       .y_label = "standard error, of sigma and slip_force over the value [-]",
                       .log_x = true,
                       .log_y = true};
-  for (const char* parameter : kShown) {
+  for (const char* parameter : report::kLawParameters) {
     io::PlotSeries series{.label = parameter, .style = io::PlotStyle::kLineAndPoints};
     for (const ExpectedFit& fit : plan.loops) {
       const std::optional<double> error = ErrorOf(fit, parameter);

@@ -34,7 +34,7 @@ bool IsMoot(const Report& report, const ParameterEstimate& estimate) {
 }
 
 bool IsOfLaw(std::string_view parameter) {
-  return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
+  return std::ranges::find(kLawParameters, parameter) != kLawParameters.end();
 }
 
 /// Returns "half gap" of "half_gap".

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,7 +20,9 @@ inline Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
-/// Returns the parameters of a law by the names that they have in every JSON.
+/// Names the parameters of a law in every JSON.
+inline constexpr std::array kLawParameters = {"sigma", "alpha", "slip_force"};
+/// Returns the parameters of a law by these names.
 inline Json LawJson(const models::BranchLaw& law) {
   return {{"sigma", NumberOrNull(law.tangential_stiffness)},
           {"alpha", NumberOrNull(law.shape_exponent)},

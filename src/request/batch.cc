@@ -27,8 +27,6 @@ using report::Json;
 
 namespace {
 
-constexpr std::array kParameters = {"sigma", "alpha", "slip_force"};
-
 /// A quantity that repeats of a test have in common, by the names of its columns.
 struct Repeated {
   std::string name;
@@ -57,7 +55,7 @@ Json RowOf(const BatchEntry& entry, const Json& fit) {
     const Json measured = At(fit, fmt::format("/measured/{}", name));
     row[name] = measured.is_object() ? measured["value"] : measured;
   }
-  for (const std::string name : kParameters) {
+  for (const std::string name : report::kLawParameters) {
     const Json parameter = At(fit, "/parameters/" + name);
     row[name] = At(parameter, "/value");
     row[name + "_error"] = At(parameter, "/standard_error");
@@ -133,7 +131,7 @@ std::string IndexPage(std::span<const BatchEntry> entries, std::string_view titl
   for (const BatchEntry& entry : entries) {
     std::vector<std::string> cells = {fmt::format("{}", files.size() + 1), entry.verdict};
     cells.insert(cells.end(), entry.parameters.begin(), entry.parameters.end());
-    cells.resize(2 + kParameters.size());
+    cells.resize(2 + report::kLawParameters.size());
     cells.push_back(entry.fault);
     files.push_back({entry.file, std::move(cells), report::JudgementOf(entry.verdict),
                      entry.fit.empty() ? "" : PageName(files.size())});
@@ -164,7 +162,7 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
     entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
-    for (const char* parameter : kParameters) {
+    for (const char* parameter : report::kLawParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
       if (estimate != nullptr) entry.parameters.push_back(report::ValueText(*estimate));
     }
