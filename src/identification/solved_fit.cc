@@ -69,6 +69,15 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
   return false;
 }
 
+/// True of loops that give energy, as no contact by itself does: their force has the other sign.
+bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared) {
+  constexpr double kClear = 0.05;  // [W/(4XT*)]
+  if (!options.terms.empty() || !options.covariates.empty() || !options.fixed.empty()) return false;
+  return std::ranges::all_of(prepared.records, [](const loop::PreparedRecord& record) {
+    return record.facts.closed && record.facts.energy_ratio < -kClear;
+  });
+}
+
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   // A fit that is given a start looks for others on all samples, where it does.
@@ -84,6 +93,10 @@ SolvedFit FitBestState(const Attempt& attempt) {
   for (const InitialState state : StatesToTry(attempt)) {
     candidates.emplace_back(attempt.data, options, state);
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
+  }
+  if (GiveEnergy(options, attempt.prepared)) {
+    Descend(candidates.front(), options, attempt.solver);  // without a start
+    return {.best = std::move(candidates.front())};
   }
   std::vector<double> costs;  // at the best starts
   for (Candidate& candidate : candidates) {
