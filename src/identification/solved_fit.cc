@@ -71,7 +71,7 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
 
 /// True of loops that give energy, as no contact by itself does: their force has the other sign.
 bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared) {
-  constexpr double kClear = 0.05;  // [W/(4XT*)]
+  constexpr double kClear = 0.2;  // [W/(4XT*)]: noise alone gives a tenth
   if (!options.terms.empty() || !options.covariates.empty() || !options.fixed.empty()) return false;
   return std::ranges::all_of(prepared.records, [](const loop::PreparedRecord& record) {
     return record.facts.closed && record.facts.energy_ratio < -kClear;
