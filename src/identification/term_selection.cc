@@ -168,10 +168,82 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
 class Selection {
  public:
   /// @param law  fit of the records with the options
-  Selection(std::span<const RecordView> records, const FitOptions& options, const FitResult& law);
+  Selection(std::span<const RecordView> records, const FitOptions& options, const FitResult& law)
+      : records_(records),
+        drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
+        facts_(law.WidestRecord().facts),
+        candidates_(CandidatesOf(records, options, law)),
+        base_{.options = options, .fit = law} {
+    // The law is fitted again as the candidates are, without an upper bound on the slip force: a
+    // missing term may drive it beyond the measured force.
+    base_ = law_ = FitWith({});
+  }
 
-  TermSelection Run(FitResult law);
-  std::vector<std::string> Likely(std::size_t most);
+  TermSelection Run(FitResult law) {
+    TermSelection result;
+    result.options = base_.options;
+    while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
+    }
+    FitResult last;
+    // Short of slip the law itself has the forms of several: together they would take its place.
+    if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon(law);
+    if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
+    if (IsFitted(last)) {
+      // One term that leaves but noise rules out what leaves much more.
+      const bool is_settled =
+          added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
+      std::erase_if(alternatives_, [&](const Alternative& alternative) {
+        return IsAdded(alternative.name) ||
+               (is_settled && alternative.rms > Limits().larger_rms * last.rms);
+      });
+      IncludeAlternatives(alternatives_, Limits(), last);
+      result.fit = std::move(last);
+      result.options = base_.options;
+      result.added = added_;
+    } else {
+      result.fit = std::move(law);
+    }
+    for (TermCandidate& candidate : candidates_) {
+      if (!IsAdded(candidate.name)) continue;
+      candidate.added = !result.added.empty();
+      candidate.obstacle = candidate.added ? "" : "confounded";
+    }
+    result.considered.assign(candidates_.begin(), candidates_.end());
+    std::ranges::stable_sort(result.considered, std::greater(), &ConsideredTerm::gain);
+    std::ranges::stable_sort(result.considered, {}, [&](const ConsideredTerm& term) {
+      return std::ranges::find(result.added, term.name) - result.added.begin();
+    });
+    return result;
+  }
+
+  /// Fits each of the few candidates that promise most, and returns those that can be added, the
+  /// one that gains most first; the gain of a column that follows the force counts twice.
+  std::vector<std::string> Likely(std::size_t most) {
+    std::vector<TermCandidate*> tried = Score();
+    std::erase_if(tried, [&](TermCandidate* candidate) {
+      return candidate->gain < Limits().worthwhile_gain || IsRefused(*candidate);
+    });
+    // A linear step does not predict the gain of a column whose force the law has taken up: it is
+    // fitted first.
+    const auto column = std::ranges::find_if(candidates_, &TermCandidate::FollowsForce);
+    if (column != candidates_.end() && IsFitted(base_.fit)) tried.insert(tried.begin(), &*column);
+    tried.resize(std::min(tried.size(), most));
+    std::multimap<double, std::string, std::greater<>> by_gain;
+    for (const TermCandidate* const candidate : tried) {
+      const bool is_column = candidate->FollowsForce();
+      const Model model = FitWith(candidate->choice);
+      // A column that causes a part of the force reduces Tc: that alone does not rule it out.
+      const std::string_view obstacle = ObstacleTo(model);
+      if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit)))
+        continue;
+      // A measured column is preferred to a term that gains less than twice as much.
+      const double gain = base_.fit.rms - model.fit.rms;
+      by_gain.emplace(is_column ? gain / Limits().rival : gain, candidate->name);
+    }
+    std::vector<std::string> names;
+    for (auto& [gain, name] : by_gain) names.push_back(std::move(name));
+    return names;
+  }
 
  private:
   /// A model of the selection, fitted at Depth::kEstimate.
@@ -186,19 +258,200 @@ class Selection {
   }
   /// True of a loop that slides, a large force of the position beside it or not.
   [[nodiscard]] bool Slides() const { return loop::Slides(facts_) || loop::HasEvenGap(facts_); }
-  std::vector<TermCandidate*> Score();
-  [[nodiscard]] bool IsRefused(TermCandidate& candidate) const;
-  [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const;
-  Model FitWith(const TermChoice& choice, bool from_here = true);
-  FitResult FitTo(FitOptions options, Depth depth);
-  [[nodiscard]] bool Leaves(const FitResult& fit) const;
-  [[nodiscard]] bool Gains(const FitResult& fit) const;
-  [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
-  bool Add(TermCandidate& candidate, Model model);
-  bool Round();
-  FitResult FitCommon(const FitResult& law);
-  void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others);
-  FitResult FitLast(const FitResult& law, const Model& model);
+
+  /// Scores the candidates at the present solution and returns those that have an effect, the best
+  /// first.
+  std::vector<TermCandidate*> Score() {
+    if (!IsFitted(base_.fit) || !base_.fit.converged) return {};
+    std::vector<TermChoice> choices;
+    for (TermCandidate& candidate : candidates_) {
+      std::erase_if(candidate.choice.terms,
+                    [&](const std::string& term) { return HasTerm(base_.options, term); });
+      choices.push_back(IsAdded(candidate.name) ? TermChoice() : candidate.choice);
+    }
+    FitOptions as_fitted = base_.options;
+    as_fitted.preparation.force_sense = base_.fit.force_sense;
+    const auto scores = ScoreTerms(records_, base_.fit, as_fitted, choices);
+    std::vector<TermCandidate*> scored;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      TermCandidate& candidate = candidates_[c];
+      if (IsAdded(candidate.name)) continue;
+      const bool stays = candidate.obstacle == "confounded" || candidate.obstacle == "same_channel";
+      if (!stays) candidate.obstacle = "";
+      candidate.score = scores[c];
+      candidate.gain = candidate.score ? candidate.score->gain : 0.0;
+      if (candidate.score) scored.push_back(&candidate);
+    }
+    std::ranges::stable_sort(scored, std::greater(), &TermCandidate::gain);
+    return scored;
+  }
+
+  /// True if a candidate that gains is not to be added, and says why where that is to be reported.
+  [[nodiscard]] bool IsRefused(TermCandidate& candidate) const {
+    // Without a slip force of the speed, a drag and the slip force at rest are confounded.
+    if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
+    // Short of slip a slip force of the position and its spring take the law's place.
+    if (candidate.name.starts_with("slip_position") && !Slides()) {
+      candidate.obstacle = "confounded";
+    }
+    if (candidate.score->is_negative) candidate.obstacle = "unphysical";
+    return !candidate.obstacle.empty();
+  }
+
+  /// Returns the best, or what has some of its terms only and gains at least half as much.
+  [[nodiscard]] TermCandidate& Simplest(std::span<TermCandidate* const> candidates) const {
+    const TermCandidate& most = *candidates.front();
+    TermCandidate* best = candidates.front();
+    for (TermCandidate* const one : candidates) {
+      const bool is_part = one->choice.covariate.empty() &&
+                           std::ranges::all_of(one->choice.terms, [&](const std::string& term) {
+                             const std::vector<std::string>& all = most.choice.terms;
+                             return std::ranges::find(all, term) != all.end();
+                           });
+      const bool is_smaller = one->score->parameters < best->score->parameters;
+      if (is_part && is_smaller && one->gain >= Limits().rival * most.gain) best = one;
+    }
+    return *best;
+  }
+
+  /// Fits the present model with some more terms.
+  /// @param from_here  from its solution, else from starts of its own
+  Model FitWith(const TermChoice& choice, bool from_here = true) {
+    Model model{.options = choice.AddedTo(base_.options), .fit = {}};
+    FitOptions options = model.options;
+    if (from_here) {
+      options.initial_state = base_.fit.initial_state;
+      StartFrom(base_.fit, options);
+    }
+    options.preparation.force_sense = base_.fit.force_sense;
+    model.fit = FitTo(std::move(options), Depth::kEstimate);
+    return model;
+  }
+
+  /// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
+  /// loop.
+  FitResult FitTo(FitOptions options, Depth depth) {
+    constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
+    options.preparation.drawn = drawn_;
+    options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
+    try {
+      return Fitter(options).Fit(records_, depth);
+    } catch (const InvalidArgument&) {
+      return {};
+    }
+  }
+
+  /// True if Tc leaves the half gap that was measured, and more than noise is left.
+  [[nodiscard]] bool Leaves(const FitResult& fit) const {
+    return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
+           !IsNearlyWhite(fit, Limits());
+  }
+
+  [[nodiscard]] bool Gains(const FitResult& fit) const {
+    return fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
+  }
+
+  /// Says why a larger model does not replace the present one; empty where it does.
+  [[nodiscard]] std::string_view ObstacleTo(const Model& model) const {
+    const FitResult& fit = model.fit;
+    if (!IsFitted(fit) || !fit.converged) return "not_converged";
+    if (IsUnphysical(fit)) return "unphysical";
+    const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
+    return Leaves(fit) || stops || !Gains(fit) ? "confounded" : "";
+  }
+
+  /// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate
+  /// keeps.
+  bool Add(TermCandidate& candidate, Model model) {
+    candidate.obstacle = ObstacleTo(model);
+    if (!candidate.obstacle.empty()) return false;
+    added_.push_back(candidate.name);
+    base_ = std::move(model);
+    return true;
+  }
+
+  /// Keeps what candidates that gain at least half as much as the one that is added would make of
+  /// the law: the record may have been made by them.
+  void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others) {
+    for (const TermCandidate* const other : others) {
+      const bool is_column = !other->choice.covariate.empty();
+      const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
+      if (is_column || is_unphysical || other->gain < Limits().rival * added.gain) continue;
+      Alternative& alternative =
+          alternatives_.emplace_back(Alternative{.name = other->name, .rms = other->score->rms});
+      std::ranges::transform(other->score->law, added.score->law, alternative.law.begin(),
+                             std::minus());
+    }
+  }
+
+  /// Adds the best candidate that can be added; false where there is none.
+  bool Round() {
+    std::vector<TermCandidate*> explaining = Score();
+    const double chance =
+        Limits().added_by_chance / static_cast<double>(std::max<std::size_t>(explaining.size(), 1));
+    std::erase_if(explaining, [&](const TermCandidate* candidate) {
+      return candidate->gain < Limits().worthwhile_gain || !(candidate->score->p_value < chance);
+    });
+    std::vector<TermCandidate*> left = explaining;
+    std::erase_if(left, [&](TermCandidate* candidate) { return IsRefused(*candidate); });
+    constexpr double kMost = 0.5;
+    while (!left.empty()) {
+      TermCandidate& best = Simplest(left);
+      // A search from a solution that most of the misfit has led astray may end elsewhere.
+      if (Add(best, FitWith(best.choice)) ||
+          (best.gain > kMost && Add(best, FitWith(best.choice, /*from_here=*/false)))) {
+        KeepAlternatives(best, explaining);
+        return true;
+      }
+      std::erase(left, &best);
+    }
+    return false;
+  }
+
+  /// Fits a model to the end, from its solution.
+  /// @param law  without terms, of Depth::kFull
+  /// @returns a fit without parameters where Tc is lost
+  FitResult FitLast(const FitResult& law, const Model& model) {
+    FitOptions options = model.options;
+    StartFrom(model.fit, options);
+    FitResult last = FitTo(std::move(options), Depth::kFull);
+    const bool is_kept =
+        IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio);
+    return is_kept ? last : FitResult();
+  }
+
+  /// Fits the law with all common terms, which begin without effect, and moves there unless there
+  /// is an obstacle or the terms that were added one after the other leave hardly more.
+  /// @returns a fit without parameters where it does not move
+  FitResult FitCommon(const FitResult& law) {
+    std::vector<std::string> common;
+    TermChoice all;
+    for (const TermCandidate& candidate : candidates_) {
+      if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
+      common.push_back(candidate.name);
+      const std::vector<std::string_view>& terms = FindTermGroup(candidate.name)->terms;
+      all.terms.insert(all.terms.end(), terms.begin(), terms.end());
+    }
+    FitOptions from_terms = all.AddedTo(law_.options);
+    Model model{.options = from_terms, .fit = {}};
+    for (const std::string& term : all.terms) {
+      const std::optional<double> start = FindTerm(term)->start;
+      if (start && !HasTerm(law_.options, term)) from_terms.start[term] = *start;
+    }
+    model.fit = FitTo(std::move(from_terms), Depth::kEstimate);
+    const bool is_better = Gains(model.fit);
+    const Model added = std::exchange(base_, law_);
+    FitResult last;
+    if (is_better && ObstacleTo(model).empty()) last = FitLast(law, model);
+    if (!IsFitted(last)) {
+      base_ = added;
+      return {};
+    }
+    added_ = std::move(common);
+    alternatives_.clear();
+    base_.options = std::move(model.options);
+    return last;
+  }
 
   std::span<const RecordView> records_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
@@ -209,277 +462,6 @@ class Selection {
   std::vector<std::string> added_;  // names of these candidates, in their order
   std::vector<Alternative> alternatives_;
 };
-
-Selection::Selection(std::span<const RecordView> records, const FitOptions& options,
-                     const FitResult& law)
-    : records_(records),
-      drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
-      facts_(law.WidestRecord().facts),
-      candidates_(CandidatesOf(records, options, law)),
-      base_{.options = options, .fit = law} {
-  // The law is fitted again as the candidates are, without an upper bound on the slip force: a
-  // missing term may drive it beyond the measured force.
-  base_ = law_ = FitWith({});
-}
-
-/// Scores the candidates at the present solution and returns those that have an effect, the best
-/// first.
-std::vector<TermCandidate*> Selection::Score() {
-  if (!IsFitted(base_.fit) || !base_.fit.converged) return {};
-  std::vector<TermChoice> choices;
-  for (TermCandidate& candidate : candidates_) {
-    std::erase_if(candidate.choice.terms,
-                  [&](const std::string& term) { return HasTerm(base_.options, term); });
-    choices.push_back(IsAdded(candidate.name) ? TermChoice() : candidate.choice);
-  }
-  FitOptions as_fitted = base_.options;
-  as_fitted.preparation.force_sense = base_.fit.force_sense;
-  const auto scores = ScoreTerms(records_, base_.fit, as_fitted, choices);
-  std::vector<TermCandidate*> scored;
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    TermCandidate& candidate = candidates_[c];
-    if (IsAdded(candidate.name)) continue;
-    const bool stays = candidate.obstacle == "confounded" || candidate.obstacle == "same_channel";
-    if (!stays) candidate.obstacle = "";
-    candidate.score = scores[c];
-    candidate.gain = candidate.score ? candidate.score->gain : 0.0;
-    if (candidate.score) scored.push_back(&candidate);
-  }
-  std::ranges::stable_sort(scored, std::greater(), &TermCandidate::gain);
-  return scored;
-}
-
-/// True if a candidate that gains is not to be added, and says why where that is to be reported.
-bool Selection::IsRefused(TermCandidate& candidate) const {
-  // Without a slip force of the speed, a drag and the slip force at rest are confounded.
-  if (candidate.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
-  // Short of slip a slip force of the position and its spring take the law's place.
-  if (candidate.name.starts_with("slip_position") && !Slides()) {
-    candidate.obstacle = "confounded";
-  }
-  if (candidate.score->is_negative) candidate.obstacle = "unphysical";
-  return !candidate.obstacle.empty();
-}
-
-/// Returns the best, or what has some of its terms only and gains at least half as much.
-TermCandidate& Selection::Simplest(std::span<TermCandidate* const> candidates) const {
-  const TermCandidate& most = *candidates.front();
-  TermCandidate* best = candidates.front();
-  for (TermCandidate* const one : candidates) {
-    const bool is_part = one->choice.covariate.empty() &&
-                         std::ranges::all_of(one->choice.terms, [&](const std::string& term) {
-                           const std::vector<std::string>& all = most.choice.terms;
-                           return std::ranges::find(all, term) != all.end();
-                         });
-    const bool is_smaller = one->score->parameters < best->score->parameters;
-    if (is_part && is_smaller && one->gain >= Limits().rival * most.gain) best = one;
-  }
-  return *best;
-}
-
-/// Fits the present model with some more terms.
-/// @param from_here  from its solution, else from starts of its own
-Selection::Model Selection::FitWith(const TermChoice& choice, bool from_here) {
-  Model model{.options = choice.AddedTo(base_.options), .fit = {}};
-  FitOptions options = model.options;
-  if (from_here) {
-    options.initial_state = base_.fit.initial_state;
-    StartFrom(base_.fit, options);
-  }
-  options.preparation.force_sense = base_.fit.force_sense;
-  model.fit = FitTo(std::move(options), Depth::kEstimate);
-  return model;
-}
-
-/// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
-/// loop.
-FitResult Selection::FitTo(FitOptions options, Depth depth) {
-  constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
-  options.preparation.drawn = drawn_;
-  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  try {
-    return Fitter(options).Fit(records_, depth);
-  } catch (const InvalidArgument&) {
-    return {};
-  }
-}
-
-/// True if Tc leaves the half gap that was measured, and more than noise is left.
-bool Selection::Leaves(const FitResult& fit) const {
-  return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
-         !IsNearlyWhite(fit, Limits());
-}
-
-bool Selection::Gains(const FitResult& fit) const {
-  return fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
-}
-
-/// Says why a larger model does not replace the present one; empty where it does.
-std::string_view Selection::ObstacleTo(const Model& model) const {
-  const FitResult& fit = model.fit;
-  if (!IsFitted(fit) || !fit.converged) return "not_converged";
-  if (IsUnphysical(fit)) return "unphysical";
-  const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
-  return Leaves(fit) || stops || !Gains(fit) ? "confounded" : "";
-}
-
-/// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate keeps.
-bool Selection::Add(TermCandidate& candidate, Model model) {
-  candidate.obstacle = ObstacleTo(model);
-  if (!candidate.obstacle.empty()) return false;
-  added_.push_back(candidate.name);
-  base_ = std::move(model);
-  return true;
-}
-
-/// Keeps what candidates that gain at least half as much as the one that is added would make of the
-/// law: the record may have been made by them.
-void Selection::KeepAlternatives(const TermCandidate& added,
-                                 std::span<TermCandidate* const> others) {
-  for (const TermCandidate* const other : others) {
-    const bool is_column = !other->choice.covariate.empty();
-    const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
-    if (is_column || is_unphysical || other->gain < Limits().rival * added.gain) continue;
-    Alternative& alternative =
-        alternatives_.emplace_back(Alternative{.name = other->name, .rms = other->score->rms});
-    std::ranges::transform(other->score->law, added.score->law, alternative.law.begin(),
-                           std::minus());
-  }
-}
-
-/// Adds the best candidate that can be added; false where there is none.
-bool Selection::Round() {
-  std::vector<TermCandidate*> explaining = Score();
-  const double chance =
-      Limits().added_by_chance / static_cast<double>(std::max<std::size_t>(explaining.size(), 1));
-  std::erase_if(explaining, [&](const TermCandidate* candidate) {
-    return candidate->gain < Limits().worthwhile_gain || !(candidate->score->p_value < chance);
-  });
-  std::vector<TermCandidate*> left = explaining;
-  std::erase_if(left, [&](TermCandidate* candidate) { return IsRefused(*candidate); });
-  constexpr double kMost = 0.5;
-  while (!left.empty()) {
-    TermCandidate& best = Simplest(left);
-    // A search from a solution that most of the misfit has led astray may end elsewhere.
-    if (Add(best, FitWith(best.choice)) ||
-        (best.gain > kMost && Add(best, FitWith(best.choice, /*from_here=*/false)))) {
-      KeepAlternatives(best, explaining);
-      return true;
-    }
-    std::erase(left, &best);
-  }
-  return false;
-}
-
-/// Fits a model to the end, from its solution.
-/// @param law  without terms, of Depth::kFull
-/// @returns a fit without parameters where Tc is lost
-FitResult Selection::FitLast(const FitResult& law, const Model& model) {
-  FitOptions options = model.options;
-  StartFrom(model.fit, options);
-  FitResult last = FitTo(std::move(options), Depth::kFull);
-  const bool is_kept =
-      IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio);
-  return is_kept ? last : FitResult();
-}
-
-/// Fits the law with all common terms, which begin without effect, and moves there unless there is
-/// an obstacle or the terms that were added one after the other leave hardly more.
-/// @returns a fit without parameters where it does not move
-FitResult Selection::FitCommon(const FitResult& law) {
-  std::vector<std::string> common;
-  TermChoice all;
-  for (const TermCandidate& candidate : candidates_) {
-    if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
-    common.push_back(candidate.name);
-    const std::vector<std::string_view>& terms = FindTermGroup(candidate.name)->terms;
-    all.terms.insert(all.terms.end(), terms.begin(), terms.end());
-  }
-  FitOptions from_terms = all.AddedTo(law_.options);
-  Model model{.options = from_terms, .fit = {}};
-  for (const std::string& term : all.terms) {
-    const std::optional<double> start = FindTerm(term)->start;
-    if (start && !HasTerm(law_.options, term)) from_terms.start[term] = *start;
-  }
-  model.fit = FitTo(std::move(from_terms), Depth::kEstimate);
-  const bool is_better = Gains(model.fit);
-  const Model added = std::exchange(base_, law_);
-  FitResult last;
-  if (is_better && ObstacleTo(model).empty()) last = FitLast(law, model);
-  if (!IsFitted(last)) {
-    base_ = added;
-    return {};
-  }
-  added_ = std::move(common);
-  alternatives_.clear();
-  base_.options = std::move(model.options);
-  return last;
-}
-
-TermSelection Selection::Run(FitResult law) {
-  TermSelection result;
-  result.options = base_.options;
-  while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
-  }
-  FitResult last;
-  // Short of slip the law itself has the forms of several: together they would take its place.
-  if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon(law);
-  if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
-  if (IsFitted(last)) {
-    // One term that leaves but noise rules out what leaves much more.
-    const bool is_settled =
-        added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
-    std::erase_if(alternatives_, [&](const Alternative& alternative) {
-      return IsAdded(alternative.name) ||
-             (is_settled && alternative.rms > Limits().larger_rms * last.rms);
-    });
-    IncludeAlternatives(alternatives_, Limits(), last);
-    result.fit = std::move(last);
-    result.options = base_.options;
-    result.added = added_;
-  } else {
-    result.fit = std::move(law);
-  }
-  for (TermCandidate& candidate : candidates_) {
-    if (!IsAdded(candidate.name)) continue;
-    candidate.added = !result.added.empty();
-    candidate.obstacle = candidate.added ? "" : "confounded";
-  }
-  result.considered.assign(candidates_.begin(), candidates_.end());
-  std::ranges::stable_sort(result.considered, std::greater(), &ConsideredTerm::gain);
-  std::ranges::stable_sort(result.considered, {}, [&](const ConsideredTerm& term) {
-    return std::ranges::find(result.added, term.name) - result.added.begin();
-  });
-  return result;
-}
-
-/// Fits each of the few candidates that promise most, and returns those that can be added, the one
-/// that gains most first; the gain of a column that follows the force counts twice.
-std::vector<std::string> Selection::Likely(std::size_t most) {
-  std::vector<TermCandidate*> tried = Score();
-  std::erase_if(tried, [&](TermCandidate* candidate) {
-    return candidate->gain < Limits().worthwhile_gain || IsRefused(*candidate);
-  });
-  // A linear step does not predict the gain of a column whose force the law has taken up: it is
-  // fitted first.
-  const auto column = std::ranges::find_if(candidates_, &TermCandidate::FollowsForce);
-  if (column != candidates_.end() && IsFitted(base_.fit)) tried.insert(tried.begin(), &*column);
-  tried.resize(std::min(tried.size(), most));
-  std::multimap<double, std::string, std::greater<>> by_gain;
-  for (const TermCandidate* const candidate : tried) {
-    const bool is_column = candidate->FollowsForce();
-    const Model model = FitWith(candidate->choice);
-    // A column that causes a part of the force reduces Tc: that alone does not rule it out.
-    const std::string_view obstacle = ObstacleTo(model);
-    if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit))) continue;
-    // A measured column is preferred to a term that gains less than twice as much.
-    const double gain = base_.fit.rms - model.fit.rms;
-    by_gain.emplace(is_column ? gain / Limits().rival : gain, candidate->name);
-  }
-  std::vector<std::string> names;
-  for (auto& [gain, name] : by_gain) names.push_back(std::move(name));
-  return names;
-}
 
 }  // namespace
 
