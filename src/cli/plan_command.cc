@@ -148,8 +148,9 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, std::string_view parameter
 Json ErrorRows(const Plan& plan) {
   return report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
     Json row = {{"X [m]", fit.protocol.amplitude}, {"X/slip", fit.protocol.amplitude / plan.slip}};
-    for (const char* parameter : report::kLawParameters)
+    for (const char* parameter : report::kLawParameters) {
       row[parameter] = NumberOrNull(ErrorOf(fit, parameter));
+    }
     return row;
   });
 }

@@ -171,8 +171,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     }
   }
   // Dahl's own law can start from any force, Masing's only from reversals that may not be recorded:
-  // the first branch of an excerpt is no evidence for Dahl's, unless the loop is short of slip,
-  // where no such reversals give Masing's contact the loop of Dahl's, and Dahl's leaves but noise.
+  // the first branch of an excerpt is no evidence for Dahl's, unless a whole stroke follows it and
+  // the loop is short of slip, where no such reversals give Masing's contact the loop of Dahl's,
+  // and Dahl's leaves but noise.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
@@ -180,9 +181,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     const auto leaves_more = [&](const FitResult& of) {
       return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
     };
-    const bool is_told = !loop::HasSlipped(fit.WidestRecord().facts) &&
-                         leaves_more(is_masing ? fit : *other) &&
-                         !leaves_more(is_masing ? *other : fit);
+    const bool is_told =
+        fit.WidestRecord().reversals.size() > 1 && !loop::HasSlipped(fit.WidestRecord().facts) &&
+        leaves_more(is_masing ? fit : *other) && !leaves_more(is_masing ? *other : fit);
     if (!is_told) return choice;
   } else if (!past.empty()) {
     FitOptions same = options;

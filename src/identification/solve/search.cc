@@ -217,6 +217,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   }
   constexpr std::size_t kStartsAmongKinks = 4;
   constexpr double kSmooth = 1.0;  // α
+  constexpr double kClearly = 0.98;
   // The thinned record's minimum is a start only: no digits are asked of it.
   constexpr SolverOptions kRough{.function_tolerance = 1e-2,
                                  .parameter_tolerance = 1e-6,
@@ -253,19 +254,19 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     }
     Look& start = starts.emplace_back(std::move(look));
     if (!options.start.empty()) continue;  // a start that is given is one
-    const auto follow = [&](const std::vector<double>& theta) {
+    const auto follow = [&](const std::vector<double>& theta, double share_of_cost) {
       solver.Solve(theta, kRough, scratch);
-      if (!(scratch.sum_of_squares < start.cost)) return;
+      if (!(scratch.sum_of_squares < share_of_cost * start.cost)) return;
       start.theta = scratch.theta;
       start.cost = scratch.sum_of_squares;
     };
-    follow(start.theta);
+    follow(start.theta, 1.0);
     // A sample that slips under a sharp law shows no way back to a smooth one, under which it does
-    // not.
+    // not. Far from slip a smooth law is as good, and the valley to it long.
     if (shape.fixed || !(start.theta[kShape] < kSmooth)) continue;
     std::vector<double> smooth = start.theta;
     smooth[kShape] = std::min(kSmooth, shape.upper);
-    follow(smooth);
+    follow(smooth, kClearly);
   }
   std::ranges::stable_sort(starts, {}, &Look::cost);
   if (starts.size() > most) starts.resize(most);

@@ -304,7 +304,7 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   const int left = options.max_iterations - report.iterations;
   if (!options.is_rough && left > 0 && std::isfinite(cost) &&
       (!solution.converged || search.is_slow() || IsAtBound(residual_, u))) {
-    constexpr int kOfOneSearch = 3;  // iterations by Ceres
+    constexpr int kOfOneSearch = 10;  // iterations by Ceres
     SolverOptions within_bounds = options;
     within_bounds.max_iterations = kOfOneSearch * left;
     residual_.Evaluate(u);
