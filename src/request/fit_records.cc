@@ -119,14 +119,14 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
   asked.options = options;
   asked.fit = identification::Fit(records, options);
   const auto& choice = asked.fit.law_choice;
-  if (chooses_law && (choice ? choice->prefers_alternative() : !asked.fit.converged)) {
+  if (chooses_law && choice && choice->prefers_alternative()) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     FitResult other = identification::Fit(records, of_other);
     const auto& confirmed = other.law_choice;
     const bool is_preferred =
         !confirmed || (confirmed->decided && !confirmed->prefers_alternative());
-    if (other.converged && (is_preferred || !asked.fit.converged)) {
+    if (other.converged && is_preferred) {
       asked.options = std::move(of_other);
       asked.fit = std::move(other);
     }
