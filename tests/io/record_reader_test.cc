@@ -224,6 +224,27 @@ TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
   EXPECT_EQ(Read("x,Fx_rad\n1,2\n", Choose("", "Fx_rad")).force.unit, "N");
 }
 
+TEST(RecordReader, ReadsOfAnAxialAndATorsionalPairTheOneWhoseMotionGoesToAndFro) {
+  // Both loads go to and fro; the angle rests, or the stroke.
+  const std::string header = "stroke [mm],force [N],angle [deg],torque [N m]\n";
+  const RecordFile axial = Read(header + "0,0,5,0\n1,1,5,1\n-1,-1,6,-1\n0,0,6,0\n");
+  EXPECT_EQ(std::pair(axial.displacement.index, axial.force.index), std::pair(1UL, 2UL));
+  const RecordFile torsional = Read(header + "5,0,0,0\n5,1,1,1\n6,-1,-1,-1\n6,0,0,0\n");
+  EXPECT_EQ(std::pair(torsional.displacement.index, torsional.force.index), std::pair(3UL, 4UL));
+  EXPECT_TRUE(torsional.is_torsional);
+}
+
+TEST(RecordReader, ReadsALoadOfAJointInNewtonOrAsATorque) {
+  for (const auto& [load, value] : {std::pair("load [kN]", 3000.0), {"load [N mm]", 0.003}}) {
+    const RecordFile file = Read(std::string("angle [rad],torque [N m],") + load + "\n1,2,3\n",
+                                 Choose("", "", "", "load"));
+    EXPECT_TRUE(file.is_torsional);
+    EXPECT_DOUBLE_EQ(file.record.normal_load[0], value);
+  }
+  EXPECT_THAT(Refusal("x [mm],F [N],load [N m]\n1,2,3\n", Choose("", "", "", "load")),
+              HasSubstr("the unit 'N m' of 'load [N m]' (column 3) is not known for the normal"));
+}
+
 TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
   RecordColumns columns;
   columns.covariates = {"p", "3"};
