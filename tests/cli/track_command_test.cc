@@ -182,6 +182,27 @@ TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {
   }
 }
 
+TEST_F(TrackCommand, RefusesAForceAndATorqueTogether) {
+  Write("torques.csv", "time [s],angle [rad],torque [N m]" + text_.substr(text_.find('\n')));
+  ExpectRefused(Track("part.csv") + Path("torques.csv"),
+                "hold a force and a torque: track them apart");
+}
+
+TEST_F(TrackCommand, NotesAGateThatIsNotCertain) {
+  std::string text = "displacement [m],force [N]\n";
+  for (std::size_t i = 0; i < 1000; ++i) {
+    // A vibration that grows and falls again: no gate parts it from the cycles.
+    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 120;
+    const double vibration = 0.1 * std::sin(7.3 * phase) * (1 + std::sin(phase / 3));
+    text += fmt::format("{},{}\n", 2e-6 * (std::sin(phase) + vibration), 40 * std::cos(phase));
+  }
+  Write("vibrating.csv", text);
+  const auto notes = [](const json& all) { return all["notes"].get<std::vector<std::string>>(); };
+  EXPECT_THAT(notes(JsonOf(Track("part.csv", "vibrating.csv"))),
+              ElementsAre(HasSubstr("is not certain: set --reversal-gate")));
+  EXPECT_THAT(notes(JsonOf(Track("whole.csv"))), IsEmpty());
+}
+
 // A spike of the displacement turns it, and makes two pieces of a cycle with ten times its energy.
 TEST_F(TrackCommand, CountsNoEnergyOfPiecesOfACycle) {
   const json whole = JsonOf(Track("clean.csv"));

@@ -323,6 +323,11 @@ TEST_F(Config, TakesListsAndYieldsToTheCommandLine) {
   EXPECT_EQ(fit["parameters"]["force_offset"]["status"], "fixed");
 }
 
+TEST_F(Config, NeedsACommand) {
+  ExpectRefused("--config " + Write("options.toml", "model = \"mindlin\"\n"),
+                "A subcommand is required");
+}
+
 TEST_F(Config, RefusesWhatItDoesNotKnow) {
   for (const auto& [toml, message] :
        {std::pair("modle = \"mindlin\"\n", "'modle' is no option of fit"),
