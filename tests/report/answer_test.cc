@@ -236,6 +236,21 @@ TEST(Answer, PutsWhatCannotBeFirst) {
               HasSubstr(" times smaller than Hertz's: look at the unit of the displacement, mm"));
 }
 
+TEST(Answer, ChecksTheUnitsOfAFrictionThatNoContactHas) {
+  ReportInput input = MadeInput();
+  input.records[0].force.unit = "kN";
+  for (const auto& [load, check] :
+       {std::pair(4.0, "μ is 10: look at the unit of the force, kN, or of the load"),
+        {8.1, ""},      // μ = 4.94
+        {39000.0, ""},  // μ = 0.00103
+        {8e4, "μ is 0.0005: look at the unit of the force, kN, or of the load"}}) {
+    input.known.normal_load = load;
+    EXPECT_EQ(LineOf(input, "check"), check) << load;
+  }
+  input.fit.parameters[2].identifiability = Identifiability::kBoundedBelow;
+  EXPECT_EQ(LineOf(input, "check"), "") << "of a slip force that is a limit";
+}
+
 TEST(Answer, AsksForTheLoadsOfFilesWhoseHalfGapsDiffer) {
   ReportInput input =
       testing::MadeInput({testing::MadeRecord(2e-6), testing::MadeRecord(2e-6)}, 2e-6);

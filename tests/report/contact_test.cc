@@ -90,8 +90,16 @@ TEST(DescribeContact, GivesGrossSlipOfMindlinsContactAlone) {
   const ContactQuantity slip = Of(DescribeContact(fit, {}), "gross_slip_displacement");
   EXPECT_NEAR(*slip.value / (1.5 * kSlipForce / kSigma), 1, kExact);
   // Tc and σ are known to ±2 %, uncorrelated.
-  EXPECT_NEAR(std::log(*slip.upper / *slip.value), std::hypot(std::log(1.02), std::log(0.98)),
-              1e-9);
+  const double of_slip_force = std::log(1.02);
+  const double of_sigma = std::log(0.98);  // δc falls with σ
+  EXPECT_NEAR(std::log(*slip.upper / *slip.value), std::hypot(of_slip_force, of_sigma), 1e-9);
+  // σ is the first parameter and Tc the third. Both too large by as much leave their ratio alone.
+  fit.correlation[2] = fit.correlation[6] = 0.5;
+  EXPECT_NEAR(
+      std::log(*Of(DescribeContact(fit, {}), "gross_slip_displacement").upper / *slip.value),
+      std::sqrt(of_slip_force * of_slip_force + of_sigma * of_sigma +
+                2 * 0.5 * of_slip_force * of_sigma),
+      1e-9);
   fit.parameters[1] = testing::MadeParameter("alpha", "-", 0.6, 0.01);
   EXPECT_FALSE(Of(DescribeContact(fit, {}), "gross_slip_displacement").value);
 }

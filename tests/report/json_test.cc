@@ -1,5 +1,7 @@
 #include "report/json.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "mindahl/report/report.h"
@@ -10,7 +12,9 @@ namespace mindahl::report::json_test {
 namespace {
 
 using testing::FailedInput;
+using testing::kMadeAmplitude;
 using testing::MadeInput;
+using testing::MadeRecord;
 
 Json Document(ReportInput input) { return Json::parse(ToJson(MakeReport(std::move(input)))); }
 
@@ -70,6 +74,27 @@ TEST(Json, ListsWhatIsLeftOut) {
   EXPECT_EQ(left_out[0]["why"], "rest");
 }
 
+TEST(Json, NamesUpToFiveRunsOfFaultsByTheirLinesAndTheOthersByTheirCause) {
+  ReportInput input = MadeInput({MadeRecord(kMadeAmplitude, 15)}, kMadeAmplitude);
+  input.fit.records[0].glitches = {0, 1, 3, 5, 7, 9};
+  input.fit.records[0].left_out = 8;
+  const auto left_out = [&] {
+    std::vector<std::string> parts;
+    const Json document = Document(ReportInput(input));
+    for (const Json& part : document["input"]["left_out"]) {
+      parts.push_back(fmt::format("{} {}-{} {}", part["samples"].dump(), part["first"].dump(),
+                                  part["last"].dump(), part["why"].dump()));
+    }
+    return parts;
+  };
+  EXPECT_THAT(left_out(),
+              ElementsAre("2 1-2 \"faults\"", "1 4-4 \"faults\"", "1 6-6 \"faults\"",
+                          "1 8-8 \"faults\"", "1 10-10 \"faults\"", "2 null-null \"lag\""));
+  input.fit.records[0].glitches.push_back(11);
+  input.options.preparation.cycles = {1, 1};
+  EXPECT_THAT(left_out(), ElementsAre("7 null-null \"faults\"", "1 null-null \"selection\""));
+}
+
 TEST(MakeReport, RefusesAnotherNumberOfRecords) {
   ReportInput input = MadeInput();
   input.records.push_back(input.records.front());
@@ -77,8 +102,6 @@ TEST(MakeReport, RefusesAnotherNumberOfRecords) {
 }
 
 // ---
-
-using testing::MadeRecord;
 
 std::string Page(ReportInput input, std::string_view command = {}) {
   return ToPage(MakeReport(std::move(input)), command);
