@@ -179,6 +179,17 @@ TEST(LawChoice, IsNotMadeByAFirstStrokeOfUnknownPast) {
   }
 }
 
+TEST(LawChoice, IsNotMadeByTheRestOfOneBranchAndHalfTheNext) {
+  Generator generator(3);
+  const Record cycled = Virgin("mindlin-dahl", 0.6 * kGrossSlip, 2.7);
+  const Record record = WithForceNoise(From(cycled, 2 * kPerCycle), 0.04, generator);
+  const FitResult fit = FitOne(record);
+  EXPECT_FALSE(fit.law_choice && fit.law_choice->decided);
+  const ParameterEstimate& sigma = *fit.Find("sigma");
+  EXPECT_LT(*sigma.lower95, kMindlin.tangential_stiffness);
+  EXPECT_GT(*sigma.upper95, kMindlin.tangential_stiffness);
+}
+
 TEST(LawChoice, IsMadeByASecondAmplitude) {
   for (const char* model : {"mindlin-dahl", "dahl"}) {
     const Record record = Noisy(TwoAmplitudes(model, 1.2 * kGrossSlip, 0.5 * kGrossSlip));
