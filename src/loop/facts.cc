@@ -25,20 +25,26 @@ constexpr double kSteady = 0.95;
 /// does, but for twice that fraction.
 constexpr double kReturns = 0.05;
 
-/// Returns the reversals, with the record's first and last sample where they lie at an extreme.
-std::vector<std::size_t> TurningPoints(Column displacement,
+/// Returns the reversals, with the record's first and last sample where they lie at an extreme; not
+/// with a first one to whose force the first cycle does not come back, as that of a virgin contact.
+std::vector<std::size_t> TurningPoints(const RecordView& record,
                                        std::span<const std::size_t> reversals) {
   std::vector<std::size_t> points(reversals.begin(), reversals.end());
   if (points.empty()) return points;
-  const auto [lowest, highest] = ExtremesOf(displacement);
-  const double tolerance = kAtExtreme * (highest - lowest);
+  const Column x = record.displacement;
+  const auto [lowest, highest] = ExtremesOf(x);
   const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
-    const double extreme = displacement[end] > displacement[neighbour] ? highest : lowest;
-    return std::abs(extreme - displacement[end]) <= tolerance;
+    const double extreme = x[end] > x[neighbour] ? highest : lowest;
+    return std::abs(extreme - x[end]) <= kAtExtreme * (highest - lowest);
   };
-  const std::size_t last = displacement.size() - 1;
-  if (points.front() != 0 && at_extreme(0, points.front())) points.insert(points.begin(), 0);
+  const std::size_t last = x.size() - 1;
   if (points.back() != last && at_extreme(last, points.back())) points.push_back(last);
+  const auto [least, greatest] = ExtremesOf(record.force);
+  const double way = points.size() < 2 ? 0.0 : record.force[points[1]] - record.force[0];
+  const bool comes_back = std::abs(way) <= 0.2 * (greatest - least);
+  if (points.front() != 0 && comes_back && at_extreme(0, points.front())) {
+    points.insert(points.begin(), 0);
+  }
   return points;
 }
 
@@ -290,13 +296,11 @@ bool RanAway(const LoopFacts& facts, double slip_force) {
   return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
 }
 
-bool ReachesSlip(const LoopFacts& facts) {
+bool HasSlipped(const LoopFacts& facts) {
+  if (Slides(facts)) return true;
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
-  const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
-  return facts.energy_per_cycle >= 0.85 * rectangle;
+  return facts.energy_per_cycle >= 0.85 * 4 * facts.peak_force * *facts.sliding_amplitude;
 }
-
-bool HasSlipped(const LoopFacts& facts) { return Slides(facts) || ReachesSlip(facts); }
 
 double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
   const Column x = record.displacement;
@@ -321,7 +325,7 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
   if (std::abs(force_sense) != 1) ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
   LoopFacts facts;
   std::vector<Cycle> cycles;
-  const std::vector<std::size_t> points = TurningPoints(record.displacement, reversals);
+  const std::vector<std::size_t> points = TurningPoints(record, reversals);
   MeasureStrokes(record, points, facts);
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     const auto of_cycle = std::span(points).subspan(k, 3);

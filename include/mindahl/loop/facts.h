@@ -71,13 +71,10 @@ bool Slides(const LoopFacts& facts);
 /// half gap that was measured.
 bool RanAway(const LoopFacts& facts, double slip_force);
 
-/// True if a measured loop reaches its slip force at the ends of the stroke, however much of it a
-/// rig takes up: its energy is 0.85 of 4·T*·sliding amplitude or more. Mindlin's contact has it
-/// from 1.2 times its gross-slip displacement on, one with α = 1 at T* = 0.993 Tc; an ellipse has
-/// π/4. A spring parallel to the contact hides it.
-bool ReachesSlip(const LoopFacts& facts);
-
-/// True if a measured loop slides over most of its stroke or reaches its slip force at the ends.
+/// True if a measured loop slides over most of its stroke, or reaches its slip force at the ends,
+/// however much of it a rig takes up: its energy is 0.85 of 4·T*·sliding amplitude or more.
+/// Mindlin's contact has it from 1.2 times its gross-slip displacement on, one with α = 1 at T* =
+/// 0.993 Tc; an ellipse has π/4. A spring parallel to the contact hides it.
 bool HasSlipped(const LoopFacts& facts);
 
 /// Returns ∮ T dδ [J] from one sample to a later one, trapezoidal, closed by a chord.
