@@ -107,7 +107,9 @@ std::span<const CycleFlag> CycleFlags() { return kFlags; }
 void RequireFit(const loop::RecordView& head, const FitOptions& options) {
   const auto [least, greatest] = std::ranges::minmax(head.force);
   if (least == greatest) return;
-  identification::Fitter(OfSteadyCycles(options)).Fit(head, identification::Depth::kEstimate);
+  FitOptions looked_at = OfSteadyCycles(options);
+  looked_at.max_iterations = 1;  // options are refused before the search, or after any
+  identification::Fitter(looked_at).Fit(head, identification::Depth::kEstimate);
 }
 
 CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
