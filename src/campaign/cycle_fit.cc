@@ -66,7 +66,7 @@ void FillFacts(const loop::Record& record, const loop::LoopFacts& facts, CycleFi
   fit["peak_force"] = facts.peak_force;
   fit["sliding_amplitude"] = facts.sliding_amplitude;
   fit["half_gap"] = facts.half_gap;
-  // Of cycles of several amplitudes the energies are those of all, the other facts of the widest.
+  // The energy is the mean of all cycles of the row; the other facts are those of the widest cycle.
   double energy = 0.0;
   for (const loop::CycleFacts& cycle : facts.cycles) energy += cycle.energy;
   fit["energy"] = energy / static_cast<double>(facts.cycles.size());

@@ -69,7 +69,8 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
   return false;
 }
 
-/// True of loops that give energy, as no contact by itself does: their force has the other sign.
+/// True if the energy of all loops is clearly negative: a contact dissipates, so that the sign of
+/// the force is wrong.
 bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared) {
   constexpr double kClear = 0.2;  // [W/(4XT*)]: noise alone gives a tenth
   if (!options.terms.empty() || !options.covariates.empty() || !options.fixed.empty()) return false;

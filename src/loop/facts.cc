@@ -25,8 +25,8 @@ constexpr double kSteady = 0.95;
 /// does, but for twice that fraction.
 constexpr double kReturns = 0.05;
 
-/// Returns the reversals, with the record's first and last sample where they lie at an extreme; not
-/// with a first one to whose force the first cycle does not come back, as that of a virgin contact.
+/// Returns the reversals, with the record's first and last sample where they lie at an extreme. The
+/// first one is left out if the first cycle does not return to its force: the contact was unloaded.
 std::vector<std::size_t> TurningPoints(const RecordView& record,
                                        std::span<const std::size_t> reversals) {
   std::vector<std::size_t> points(reversals.begin(), reversals.end());

@@ -45,8 +45,9 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
 }
 
 TEST(Profile, CoversWhatOneSampleOfAStrokeLeavesOpen) {
-  // Where one sample of a stroke slips in part, σ makes up for any α up to that at which the next
-  // sample does too: the sum of squares has an edge there, and a parabola sees one side of it.
+  // If only one sample of a stroke lies in partial slip, every α fits with a σ of its own, up to
+  // the α at which a second sample lies there. The sum of squares has an edge at that α, and the
+  // parabola describes one side of the edge only.
   int covered = 0;
   constexpr int kLoops = 12;
   for (std::uint64_t seed = 0; seed < kLoops; ++seed) {

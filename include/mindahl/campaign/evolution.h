@@ -97,8 +97,8 @@ struct Evolution {
   Course course = {};
   CourseDescription description = {};
   std::size_t known = 0;  ///< number of fits that determine it
-  /// True if the quantity stands for the test: one of the last three cycles determines it, as one
-  /// of a specimen that broke does not, and at least half as many as the best-determined one.
+  /// True if one of the last three cycles determines the quantity, and at least half as many cycles
+  /// as determine the best-determined one. After a specimen broke, no cycle determines Tc.
   bool is_of_whole_test = true;
 };
 

@@ -141,8 +141,8 @@ bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const Fi
       .IsOpenAbove(options.thresholds);
 }
 
-/// True if α rests on so few samples of a stroke that the likelihood has an edge wherever one more
-/// sample begins to slip: up to there σ makes up for any α.
+/// True if α rests on so few samples of a stroke that the likelihood has an edge at each α where
+/// one more sample enters partial slip. Between two edges every α fits with a σ of its own.
 bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
   constexpr double kFew = 2.0;  // of a stroke
   double strokes = 0.0;

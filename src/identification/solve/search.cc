@@ -261,8 +261,8 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
       start.cost = scratch.sum_of_squares;
     };
     follow(start.theta, 1.0);
-    // A sample that slips under a sharp law shows no way back to a smooth one, under which it does
-    // not. Far from slip a smooth law is as good, and the valley to it long.
+    // The force of a sample that slips does not depend on σ and α, so that its gradient does not
+    // lead from a sharp law to a smooth one. Far from slip both fit, and the valley is long.
     if (shape.fixed || !(start.theta[kShape] < kSmooth)) continue;
     std::vector<double> smooth = start.theta;
     smooth[kShape] = std::min(kSmooth, shape.upper);
