@@ -107,7 +107,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   if (is_tested) {
     Append(result.findings, IncludeCompliantRig(fitted, options, solver, result.parameters));
   }
-  if (solved.of_other_state) IncludeLaw(*solved.of_other_state, {}, thresholds, result.parameters);
+  if (solved.of_other_state) IncludeLaw(*solved.of_other_state, result.parameters);
   if (!problem.data->is_forced()) CoverSteps(attempt.prepared, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);

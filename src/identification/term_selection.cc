@@ -480,4 +480,16 @@ std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const 
   return Selection(records, options, fit).Likely(most);
 }
 
+void IncludeFit(const FitResult& with_term, const Thresholds& thresholds, FitResult& fit) {
+  for (const std::size_t p : {kStiffness, kShape}) {
+    ParameterEstimate& estimate = fit.parameters[p];
+    const ParameterEstimate& other = with_term.parameters[p];
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    Include(estimate, {.lower = std::min(other.value, other.lower95.value_or(other.value)),
+                       .upper = std::max(other.value, other.upper95.value_or(other.value))});
+  }
+  Append(fit.findings, FindWideIntervals(fit, thresholds));
+  Judge(fit.parameters, fit.findings);
+}
+
 }  // namespace mindahl::identification

@@ -120,9 +120,9 @@ ContactQuantity SlipForce(const FitResult& fit, ContactQuantity quantity, double
 
 constexpr double kThird = contact::kMindlinShapeExponent;  // of α, and Hertz's of the load
 
-bool ExcludesAThird(const ParameterEstimate& estimate, double margin = 0.0) {
-  return (estimate.lower95 && *estimate.lower95 > kThird + margin) ||
-         (estimate.upper95 && *estimate.upper95 < kThird - margin);
+bool ExcludesAThird(const ParameterEstimate& estimate) {
+  return (estimate.lower95 && *estimate.lower95 > kThird) ||
+         (estimate.upper95 && *estimate.upper95 < kThird);
 }
 
 ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
@@ -193,11 +193,7 @@ bool DeniesHertz(const FitResult& fit) {
   constexpr double kWritten = 1e-3;  // what it is held at is written with three digits
   const ParameterEstimate& fitted = *fit.Find("load_exponent");
   if (fitted.status == ParameterStatus::kFixed) return std::abs(fitted.value - kThird) >= kWritten;
-  // The interval ends at the exponent of the contact in the rig, which is as uncertain itself.
-  const bool by_rig = fit.FindFinding("shape_or_rig") != nullptr;
-  const double margin =
-      by_rig ? NormalQuantile(fit.confidence) * fitted.standard_error.value_or(0.0) : 0.0;
-  return fitted.is_known() && ExcludesAThird(fitted, margin);
+  return fitted.is_known() && ExcludesAThird(fitted);
 }
 
 }  // namespace mindahl::report

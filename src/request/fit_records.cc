@@ -382,6 +382,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     made.next =
         FindNextStep(request, asked.options, records, !made.left_out.empty(), asked.fit, found);
   }
+  if (made.next) identification::IncludeFit(found, asked.options.thresholds, asked.fit);
   // With the step another law may be the better one, and miss otherwise.
   if (made.next && request.fit.model == nullptr) {
     made.next->options += fmt::format(" --model {}", asked.options.model->name);

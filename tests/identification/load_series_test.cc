@@ -77,7 +77,8 @@ TEST(LoadSeriesFit, SeparatesRigFromContact) {
 TEST(LoadSeriesFit, IncludesTheExponentThatItHasInARig) {
   const FitResult fit = Fit(SeriesInRig(1.0 / 3, 6e7), UnderLoads());
   ASSERT_NE(fit.FindFinding("shape_or_rig"), nullptr);
-  EXPECT_NEAR(*fit.Find("load_exponent")->upper95, 1.0 / 3, 0.01);
+  EXPECT_TRUE(testing::Covers(*fit.Find("load_exponent"), 1.0 / 3));
+  EXPECT_LT(*fit.Find("load_exponent")->upper95, 0.36);
 }
 
 TEST(LoadSeriesFit, TakesLoadsOfColumnsForTheSame) {

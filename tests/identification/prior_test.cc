@@ -101,6 +101,24 @@ TEST(Prior, OfARigThatTheRecordDoesNotHaveIsContradicted) {
   EXPECT_GT(fit.Find("rig_stiffness")->value, 1.3 * kLaw.tangential_stiffness);
 }
 
+/// What a prior moves a parameter by is a misfit, as of a parameter that is held; however sharp the
+/// prior is, its distance is in proportion to both uncertainties.
+TEST(Prior, ThatTheRecordContradictsIsAMisfit) {
+  constexpr double kOff = 0.027;
+  const FitResult without = FitOne(TimedLoop(), Options());
+  const double error = *without.Find("alpha")->standard_error;
+  ASSERT_GT(kOff, 20 * error);
+  for (const double uncertainty : {1e-2 * error, 1e-4 * error}) {
+    FitOptions options = Options();
+    options.priors = {{"alpha", {without.law.shape_exponent + kOff, uncertainty}}};
+    const FitResult fit = FitOne(TimedLoop(), options);
+    EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << uncertainty;
+    const Finding* const finding = fit.FindFinding("prior_contradicted");
+    ASSERT_NE(finding, nullptr) << uncertainty;
+    EXPECT_NEAR(finding->numbers.front().second, kOff / error, 0.5 * kOff / error);
+  }
+}
+
 TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   const Record record = TimedLoop();
   const auto refusal = [&](const FitOptions& with) { return RefusalOf({record}, with); };

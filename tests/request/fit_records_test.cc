@@ -3,6 +3,7 @@
 #include "io/temporary_directory.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
+#include "recovery/recovered.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 
@@ -252,6 +253,23 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
   ASSERT_TRUE(made.next);
   EXPECT_THAT(made.next->options,
               AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
+}
+
+TEST(NextStep, LiesWithinTheIntervals) {
+  // A rig as stiff as twice the contact changes its shape by more than a step to first order says.
+  constexpr models::BranchLaw kContact{4e7, 0.7, 40.0};
+  Generator generator(4);
+  io::RecordFile file =
+      SineFile("mindlin-dahl", kContact, 5e-6, testing::Sine(5, 200), 0.0, generator);
+  for (std::size_t i = 0; i < file.record.size(); ++i) {
+    file.record.displacement[i] += file.record.force[i] / 8e7;
+    file.record.force[i] += 0.2 * testing::Normal(generator);
+  }
+  const report::Report made = FitRecords({}, {file});
+  ASSERT_TRUE(made.next);
+  EXPECT_THAT(made.next->options, StartsWith("--rig-stiffness fit"));
+  EXPECT_TRUE(testing::Covers(*made.fit.Find("sigma"), kContact.tangential_stiffness));
+  EXPECT_TRUE(testing::Covers(*made.fit.Find("alpha"), kContact.shape_exponent));
 }
 
 /// A loop of 0.8 of gross slip as an encoder of five steps in the amplitude reads it.

@@ -50,4 +50,9 @@ std::vector<std::string> LikelyTerms(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const FitResult& fit,
                                      std::size_t most);
 
+/// Extends the closed intervals of σ and α to the values and the closed ends of another fit of the
+/// record, with a term that describes it better, and judges the parameters again. Tc is held by the
+/// measured half gap, and is another force beside some of the terms.
+void IncludeFit(const FitResult& with_term, const Thresholds& thresholds, FitResult& fit);
+
 }  // namespace mindahl::identification

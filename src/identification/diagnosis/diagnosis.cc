@@ -1,6 +1,7 @@
 #include "identification/diagnosis/diagnosis.h"
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -327,24 +328,38 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                  .kind = "few_places"};
 }
 
-/// Parameters whose prior lies far from what the records say without it; where these leave a
-/// parameter open, from what they say with it.
+/// Parameters whose prior lies far from the records' own estimate, over the standard deviation of
+/// that distance: a step to first order without the prior.
 std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
                                              const Thresholds& thresholds) {
   const Problem& problem = fitted.problem();
+  const std::vector<double>& theta = fitted.solution().theta;
+  const std::vector<std::size_t>& free = problem.parameters.free();
   Finding finding{.code = "prior_contradicted"};
   double farthest = 0.0;
-  for (const std::size_t p : problem.parameters.with_prior()) {
-    const Parameter& parameter = problem.parameters[p];
-    const double uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
-    // The fit includes the prior, whose variance is u²; its own error is e. So |θ − prior|/√(u² −
-    // e²) is the distance of the records' own estimate over the standard deviation of that
-    // distance.
-    const double left = uncertainty * uncertainty - std::pow(fitted.ErrorOfTheta(p), 2);
-    const double distance = std::abs(fitted.solution().theta[p] - parameter.prior_theta) /
-                            (left > 0 ? std::sqrt(left) : uncertainty);
+  const Linearization at = WithPriors(problem, theta, fitted.linearization());
+  Eigen::Index row = fitted.residual().size() - 1;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const Parameter& parameter = problem.parameters[free[j]];
+    if (!parameter.has_prior()) continue;
+    const auto place = static_cast<Eigen::Index>(j);
+    ++row;
+    Eigen::MatrixXd others = at.jacobian;
+    others.row(row).setZero();
+    others.col(place).setZero();
+    Eigen::VectorXd own = at.jacobian.col(place);
+    own[row] = 0.0;
+    own -= others * others.colPivHouseholderQr().solve(own);  // what no other parameter explains
+    const double information = own.squaredNorm();
+    const double step = -own.dot(at.residual) / information;
+    const Eigen::VectorXd left = at.residual + own * step;
+    const double effective = EffectiveSamples(*problem.data, {left.data(), problem.size()});
+    const double variance = static_cast<double>(problem.data->counted) / effective / information +
+                            1 / std::pow(parameter.prior_root_weight, 2);
+    const double uncertainty = problem.data->prior_noise * std::sqrt(variance);
+    const double distance = std::abs(theta[free[j]] + step - parameter.prior_theta) / uncertainty;
     if (!(distance > thresholds.prior_distance)) continue;
-    finding.parameters.push_back(problem.parameters.NameOf(p));
+    finding.parameters.push_back(problem.parameters.NameOf(free[j]));
     farthest = std::max(farthest, distance);
   }
   if (finding.parameters.empty()) return std::nullopt;

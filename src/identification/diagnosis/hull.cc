@@ -18,9 +18,7 @@ namespace mindahl::identification {
 
 using contact::kMindlinShapeExponent;
 
-void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
-                const Thresholds& thresholds, ParameterEstimates& parameters) {
-  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.stiffness) return;
+void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters) {
   Include(parameters[kShape], {.lower = law.shape_exponent, .upper = law.shape_exponent});
   for (const auto& [p, value] :
        {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
@@ -64,11 +62,22 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);
   if (!solution.converged || !(loss < thresholds.indistinguishable)) return std::nullopt;
-  const models::SeriesSpring rig = sprung.problem.parameters.RigAt(solution.theta);
-  IncludeLaw(sprung.problem.parameters.LawAt(solution.theta), rig, thresholds, parameters);
-  for (ParameterEstimate& estimate : parameters) {
-    const double exponent = sprung.problem.parameters.LoadExponentAt(solution.theta);
-    if (estimate.name == "load_exponent") Include(estimate, {exponent, exponent});
+  const Parameters& of_rig = sprung.problem.parameters;
+  const models::SeriesSpring rig = of_rig.RigAt(solution.theta);
+  const models::BranchLaw law = of_rig.LawAt(solution.theta);
+  if (law.tangential_stiffness < thresholds.rigid_beside_rig * rig.stiffness) {
+    const Estimates beside_rig(sprung.problem, solution, fitted.noise(), options,
+                               LinearizeAt(sprung.problem, solution.theta, of_rig.free()));
+    ParameterEstimates others = ValuesOf(sprung.problem, solution);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      ParameterEstimate& other = others[k];
+      const std::size_t p = of_rig.reported()[k];
+      const auto same = std::ranges::find(parameters, other.name, &ParameterEstimate::name);
+      if (same == parameters.end()) continue;
+      beside_rig.Fill(p, other);
+      if (of_rig[p].fixed) SetInterval(other, {.lower = other.value, .upper = other.value});
+      Include(*same, {.lower = other.lower95, .upper = other.upper95});
+    }
   }
   return Finding{.code = "shape_or_rig", .numbers = {{"rig_stiffness", rig.stiffness}}};
 }

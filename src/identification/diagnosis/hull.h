@@ -21,14 +21,13 @@ namespace mindahl::identification {
 
 /// Includes a law that the record does not exclude in the intervals of σ, α and Tc: a
 /// closed interval of σ or Tc is extended by itself times the ratio of the values, an open one to
-/// the other value. A law far stiffer than its rig is Jenkins' element, the same curve with no
-/// other α: it is left out.
-void IncludeLaw(const models::BranchLaw& law, const models::SeriesSpring& rig,
-                const Thresholds& thresholds, ParameterEstimates& parameters);
+/// the other value.
+void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 
-/// Includes Mindlin's contact in a compliant rig in the intervals of σ, α and Tc, where the record
-/// does not distinguish it: a rig makes a loop more angular, as a smaller α does, so that where
-/// Mindlin's exponent lies above the interval of α for a rigid rig a compliant one may restore it.
+/// Extends intervals by those of Mindlin's contact in a compliant rig, where the record does not
+/// distinguish it: a rig makes a loop more angular, as a smaller α does, so that where Mindlin's
+/// exponent lies above the interval of α for a rigid rig a compliant one may restore it. A contact
+/// far stiffer than its rig is Jenkins' element, the same curve with no other α: it is left out.
 /// @param parameters  intervals so far
 /// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
 std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,

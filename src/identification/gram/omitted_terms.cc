@@ -85,28 +85,30 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds)
   const Noise& noise = fitted.noise();
   const ScaledRecords& data = *problem.data;
   const auto& free = problem.parameters.free();
-  Eigen::MatrixXd jacobian = fitted.jacobian();
+  auto [jacobian, residual] = WithPriors(problem, solution.theta, fitted.linearization());
   // A parameter at a bound, the user's or the program's, cannot move: its column explains nothing.
   for (std::size_t j = 0; j < free.size(); ++j) {
     if (solution.side[free[j]] == BoundSide::kInside) continue;
     jacobian.col(static_cast<Eigen::Index>(j)).setZero();
   }
-  const Eigen::VectorXd& residual = fitted.residual();
   const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
   const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
   DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, thresholds, most);
   if (departures.terms.empty()) return {};
+  const Eigen::Index readings = departures.columns.rows();
+  departures.columns.conservativeResizeLike(
+      Eigen::MatrixXd::Zero(jacobian.rows(), departures.columns.cols()));
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
   GramAxes axes = gram.AxesOfAll();
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
-      EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(left.size())});
+      EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(readings)});
   if (process.order > 0 || noise.drawn.size() > 0 || !noise.of_records.empty()) {
-    Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
-    columns << jacobian, departures.columns;
+    Eigen::MatrixXd columns(readings, jacobian.cols() + departures.columns.cols());
+    columns << jacobian.topRows(readings), departures.columns.topRows(readings);
     gram.SetNoise(noise.Product(data.records, process, columns));
     axes = gram.AxesOfAll();
   }

@@ -54,6 +54,21 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   return at;
 }
 
+Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at) {
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const Parameter& parameter = problem.parameters[free[j]];
+    if (!parameter.has_prior()) continue;
+    const Eigen::Index row = at.residual.size();
+    at.jacobian.conservativeResize(row + 1, Eigen::NoChange);
+    at.jacobian.row(row).setZero();
+    at.jacobian(row, static_cast<Eigen::Index>(j)) = parameter.prior_root_weight;
+    at.residual.conservativeResize(row + 1);
+    at.residual[row] = parameter.prior_root_weight * (theta[free[j]] - parameter.prior_theta);
+  }
+  return at;
+}
+
 Eigen::MatrixXd Estimates::FindDirections(const Eigen::MatrixXd& priors) {
   // Singular values below this fraction of the largest are rounding of unit columns.
   constexpr double kRankTolerance = 1e-11;

@@ -55,6 +55,9 @@ struct Linearization {
 Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
                           std::span<const std::size_t> columns);
 
+/// Returns it with each prior of a free parameter as one more reading: a row at the end.
+Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at);
+
 /// A problem with its solution and its noise, and what follows: standard errors, intervals and
 /// correlations from the likelihood's parabola at its maximum. Every later stage asks it. Never
 /// fails: by the singular values of the Jacobian, columns scaled to unit norm, it knows which
@@ -99,7 +102,7 @@ class Estimates {
     return quantile_ * ErrorOfTheta(parameter);
   }
   /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
-  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
+  [[nodiscard]] const Linearization& linearization() const { return at_; }
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
 
  private:
