@@ -91,7 +91,8 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
     const std::span<double> force(of_record, record.size());
     std::ranges::transform(force, contact.force, force.begin(), std::plus());
     contact.force = force;
-    record.facts = loop::MeasureFacts(contact, record.reversals, prepared.force_sense);
+    record.facts =
+        loop::MeasureFacts(contact, record.reversals, prepared.force_sense, record.counts);
     of_record += std::ssize(force);
   }
 }

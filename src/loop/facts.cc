@@ -319,7 +319,7 @@ double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
-                       int force_sense) {
+                       int force_sense, std::span<const unsigned char> counts) {
   Validate(record);
   if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   if (std::abs(force_sense) != 1) ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
@@ -334,10 +334,19 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
-  const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
+  std::vector<bool> chosen(cycles.size());
+  for (std::size_t k = 0; k < cycles.size() && !counts.empty(); ++k) {
+    const auto samples = counts.subspan(points[2 * k], points[2 * k + 2] - points[2 * k]);
+    chosen[k] = 2 * std::ranges::count(samples, 1) > std::ssize(samples);
+  }
+  if (std::ranges::find(chosen, true) == chosen.end()) chosen.assign(cycles.size(), true);
+  double widest = 0.0;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    if (chosen[k]) widest = std::max(widest, facts.cycles[k].amplitude);
+  }
   std::vector<Cycle> steady;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
-    facts.cycles[k].steady = facts.cycles[k].amplitude >= kSteady * widest;
+    facts.cycles[k].steady = chosen[k] && facts.cycles[k].amplitude >= kSteady * widest;
     if (facts.cycles[k].steady) steady.push_back(cycles[k]);
   }
   // Returns the values of the steady cycles that have the fact.

@@ -204,11 +204,11 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
     LeaveOutGlitches(prepared);
     FindTurns(prepared, options);
     Smooth(prepared, options);
+    LeaveOut(prepared, r, options);
     RecordView followed = prepared.readings();
     followed.displacement = prepared.displacement();
-    prepared.facts = MeasureFacts(followed, prepared.reversals, 1);
+    prepared.facts = MeasureFacts(followed, prepared.reversals, 1, prepared.counts);
     votes += ForceSense(prepared.readings(), prepared.facts);
-    LeaveOut(prepared, r, options);
   }
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   if (result.force_sense > 0) return result;

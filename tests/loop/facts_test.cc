@@ -188,6 +188,20 @@ TEST(MeasureFacts, MeansAreOfTheWidestCyclesAlone) {
   EXPECT_FALSE(facts.half_gap_standard_deviation);
 }
 
+TEST(MeasureFacts, MeansAreOfTheCyclesThatCount) {
+  const Parallelogram loop{.amplitudes = {1.0, 1.0, 1.0, 0.5, 0.5, 0.5}};
+  const Record record = MakeRecord(loop);
+  const std::vector<std::size_t> reversals = FindReversals(record.displacement, 0.0);
+  std::vector<unsigned char> counts(record.size(), 1);
+  std::fill_n(counts.begin(), FactsOf(record).cycles.back().start, 0);
+  const LoopFacts facts = MeasureFacts(record, reversals, 1, counts);
+  EXPECT_EQ(facts.cycles.size(), 5U);
+  EXPECT_NEAR(facts.amplitude, 0.5, kRounding) << "half as wide as those that do not count";
+  counts.assign(record.size(), 0);
+  EXPECT_NEAR(MeasureFacts(record, reversals, 1, counts).amplitude, 1.0, kRounding)
+      << "where no cycle counts all do";
+}
+
 TEST(MeasureFacts, AmplitudeIsThatOfCyclesAndNotOfATravel) {
   Parallelogram loop;
   Record record = MakeRecord(loop);

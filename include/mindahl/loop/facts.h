@@ -19,7 +19,7 @@ struct CycleFacts {
   double peak_force = 0.0;
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
-  bool steady = false;        ///< true if its amplitude is within 5 % of the record's widest
+  bool steady = false;        ///< true if it counts and is within 5 % of the widest that do
   bool returns = false;       ///< ends where it began, to 5 % of its width
   /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
   /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
@@ -85,12 +85,14 @@ double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last
 /// @param reversals    as from FindReversals on the same record; its first and last sample may be
 ///                     among them, where it is known to begin or end at one
 /// @param force_sense  ±1, see ForceSense; forces are given the displacement's sign
+/// @param counts       one per sample: 1 where it counts; empty: all do. A cycle most of which does
+///                     not is not steady, unless there is no other
 /// @throws InvalidArgument when the record is empty or inconsistent, or an energy overflows
 /// Energies are ∮ T dδ by the trapezoidal rule. Summed in long double: where it has 64 bits the
 /// error is below 1 ε of the result plus n·2⁻⁶² of Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the
 /// first of the cycle's n samples. Cost: linear in the samples.
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
-                       int force_sense);
+                       int force_sense, std::span<const unsigned char> counts = {});
 
 /// Gives the force the opposite sign in facts that were measured.
 void TurnForce(LoopFacts& facts);
