@@ -16,14 +16,15 @@ namespace mindahl::campaign {
 
 namespace {
 
-constexpr double kChance = 0.01;         // of a change, or of a trend, where there is none
-constexpr double kSmallestStep = 0.02;   // [-] of the value before it
-constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
-constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
-constexpr double kSettled = 0.05;        // [-] of the whole change
-constexpr std::size_t kLeastBins = 4;    // of a segment: two beyond a line
-constexpr std::size_t kOfAnEnd = 3;      // bins or cycles that show how a test begins or ends
-constexpr int kDepth = 3;                // up to eight segments
+constexpr double kChance = 0.01;           // of a change, or of a trend, where there is none
+constexpr double kSmallestStep = 0.02;     // [-] of the value before it
+constexpr double kSmallestTrend = 0.01;    // [-] of the segment's mean
+constexpr double kOfScatter = 4;           // [standard deviations] enough whatever the size
+constexpr double kSettled = 0.05;          // [-] of the whole change
+constexpr std::size_t kLeastBins = 4;      // of a segment: two beyond a line
+constexpr std::size_t kFewestToTest = 20;  // rows in which no change is found are said to have none
+constexpr std::size_t kOfAnEnd = 3;        // bins or cycles that show how a test begins or ends
+constexpr int kDepth = 3;                  // up to eight segments
 
 using Bins = std::span<const Course::Bin>;
 
@@ -265,8 +266,9 @@ void Course::Bin::Merge(const Bin& next) {
   value += (next.value - value) * next.count / count;
 }
 
-void Course::Add(std::size_t cycle, double value) {
-  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, value, value, 1};
+void Course::Add(std::size_t cycle, double value, std::size_t cycles) {
+  const auto number = static_cast<double>(cycle);
+  const Bin one = {cycle, cycle + cycles - 1, number, value, value, value, 1};
   if (bins_.empty()) first_ = value;
   last_ = value;
   if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
@@ -282,11 +284,16 @@ void Course::Add(std::size_t cycle, double value) {
 }
 
 CourseDescription Describe(const Course& course) {
-  const double mean = LineThrough(course.bins()).level;
-  CourseDescription description{.from = mean, .to = mean};
-  if (course.bins().size() < 2 * kLeastBins) return description;
+  const std::size_t rows = course.bins().size();
+  const std::size_t of_an_end = std::clamp<std::size_t>(rows / 2, 1, kOfAnEnd);
+  CourseDescription description;
+  if (rows == 0) return description;
+  description.from = LineThrough(course.bins().first(of_an_end)).level;
+  description.to = LineThrough(course.bins().last(of_an_end)).level;
+  if (rows < 2 * kLeastBins) return description;
   const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
   const Noise noise = NoiseOf(course.bins());
+  if (!(noise.variance > 0)) return description;  // all are 0
   std::vector<Segment> segments;
   Divide(bins, noise, kDepth, segments);
   std::vector<Change>& changes = description.changes;
@@ -311,10 +318,11 @@ CourseDescription Describe(const Course& course) {
     }
     before = &segment;
   }
-  if (!description.changed()) return description;
-  description.settled_at = SettledAt(segments);
-  description.from = LineThrough(course.bins().first(kOfAnEnd)).level;
-  description.to = LineThrough(course.bins().last(kOfAnEnd)).level;
+  if (description.changed()) {
+    description.settled_at = SettledAt(segments);
+  } else if (rows >= kFewestToTest) {
+    description.from = description.to = LineThrough(course.bins()).level;
+  }
   return description;
 }
 
@@ -338,7 +346,7 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
       continue;
     }
     ++evolution.known;
-    evolution.course.Add(fit.number, *value);
+    evolution.course.Add(fit.number, *value, fit.cycles);
   }
 }
 
@@ -363,7 +371,6 @@ void Describe(std::vector<Evolution>& evolutions) {
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {
-  constexpr std::size_t kFewestToTest = 20;
   std::string text;
   bool has_force = false;
   for (const Evolution& evolution : evolutions) {
@@ -381,8 +388,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
     } else if (evolution.course.bins().size() >= kFewestToTest) {
       text += FromTo(course.from, course.from, evolution.unit) + " throughout, but for scatter";
     } else {
-      text += FromTo(evolution.course.first(), evolution.course.last(), evolution.unit) +
-              ", in too few rows to test";
+      text += FromTo(course.from, course.to, evolution.unit) + ", in too few rows to test";
     }
     if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
   }

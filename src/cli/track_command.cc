@@ -31,6 +31,7 @@ struct TrackCommandOptions {
 /// Holds the answer for a test of many cycles, apart from its rows.
 struct TrackedTest {
   std::vector<std::string> files = {};
+  std::string columns = {};  // as ColumnsText() names them, of the first file
   std::string output = {};
   bool is_torsional = false;
   std::size_t samples = 0;
@@ -117,6 +118,7 @@ Json FlagRows(const TrackedTest& test) {
 /// Returns what was read, fitted and dissipated, one sentence each.
 std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
+      "columns: " + test.columns,
       fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
                   test.output),
       report::Quantity(test.energy, "J", 6) + " dissipated by the cycles that close"};
@@ -198,13 +200,14 @@ class TrackRun {
   }
 
  private:
-  void BeginFits(const loop::RecordView& head, std::string_view source) {
+  void BeginFits(const loop::RecordView& head, const io::RecordFile& layout) {
     const contact::KnownContact& known = options_.fit.contact.known;
     campaign::TrackOptions options = options_.track;
     options.fit = MakeCycleFitOptions(options_.fit);
     if (!test_.is_torsional) options.compliance = contact::TangentialCompliance(known);
     if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
     test_.gate = campaign::ChooseGate(head, options.fit);
+    test_.columns = report::ColumnsText(layout, *options.fit.preparation.force_sense);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
     if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
     campaign::RequireFit(head, options.fit);
@@ -215,7 +218,7 @@ class TrackRun {
       test_.notes.push_back(
           fmt::format("{}: the number of reversals under a gate of {:.3g} m is not certain: set "
                       "--reversal-gate",
-                      source, test_.gate.gate));
+                      layout.name, test_.gate.gate));
     }
     tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
   }
@@ -235,7 +238,7 @@ class TrackRun {
       stream.Next(piece);
     } else {
       piece = campaign::ReadHead(stream);
-      BeginFits(piece, file);
+      BeginFits(piece, layout);
     }
     while (piece.size() > 0) {
       test_.samples += piece.size();
@@ -246,12 +249,12 @@ class TrackRun {
     test_.unused_samples += tracker_->NextFile();
     const io::LeftOutRows& left_out = layout.left_out;
     if (left_out.count == 0) return;
-    if (options_.fit.columns.skip_broken_rows) test_.broken_rows += left_out.count;
+    test_.broken_rows += left_out.count;
     test_.notes.push_back(left_out.InWords());
   }
 
   /// Takes over the batches that the table has already, but for the last, which is fitted again to
-  /// compare.
+  /// compare, as are the rows behind it.
   /// @throws InputError where the file is no such table
   void TakeOverTable() {
     std::ifstream file(options_.output, std::ios::binary);
@@ -272,6 +275,9 @@ class TrackRun {
       kept_bytes_ += batch.size();
       last_batch_ = std::exchange(batch, {});
     }
+    // The last row may be that of a record which has grown since.
+    batch.erase(batch.rfind('\n', batch.empty() ? 0 : batch.size() - 2) + 1);
+    rows_behind_ = std::move(batch);
   }
 
   /// Takes over what the table has already, where that is asked for and there is one.
@@ -302,6 +308,7 @@ class TrackRun {
     }
     const bool is_kept = !last_batch_.empty();
     if (is_kept && std::exchange(last_batch_, {}) != rows) RefuseTable();
+    if (!is_kept && !rows.starts_with(std::exchange(rows_behind_, {}))) RefuseTable();
     if (!output_) {
       output_.emplace(options_.output, kept_bytes_);
       if (kept_bytes_ == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
@@ -315,6 +322,7 @@ class TrackRun {
   // A resumed run keeps the complete batches of the table on disk; a new run keeps none.
   std::uintmax_t kept_bytes_ = 0;  // size of the header and of all batches
   std::string last_batch_;         // rows of the last one
+  std::string rows_behind_;        // whole rows behind it, but for the last
   std::optional<io::AppendedFile> output_;
 };
 

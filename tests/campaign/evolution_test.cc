@@ -257,6 +257,29 @@ TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
   }
 }
 
+TEST(Describe, OfFewRowsIsFromTheMeanOfTheFirstToThatOfTheLast) {
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 7; ++cycle) course.Add(cycle, static_cast<double>(cycle));
+  EXPECT_DOUBLE_EQ(Describe(course).from, 2.0);
+  EXPECT_DOUBLE_EQ(Describe(course).to, 6.0);
+  Course two;
+  for (std::size_t cycle = 1; cycle <= 2; ++cycle) two.Add(cycle, static_cast<double>(cycle));
+  EXPECT_DOUBLE_EQ(Describe(two).from, 1.0);
+  EXPECT_DOUBLE_EQ(Describe(two).to, 2.0);
+}
+
+TEST(Describe, FindsAStepBetweenRowsOfSeveralCycles) {
+  constexpr std::size_t kOfARow = 10;
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 400; cycle += kOfARow) {
+    course.Add(cycle, cycle <= 200 ? 5.0 : 4.0, kOfARow);
+  }
+  const CourseDescription description = Describe(course);
+  ASSERT_THAT(description.changes, SizeIs(1));
+  EXPECT_EQ(description.changes[0].first_cycle, 201U);
+  EXPECT_EQ(description.settled_at, 201U);
+}
+
 TEST(Describe, HardlyEverFindsAChangeInNoise) {
   constexpr int kCourses = 200;
   for (const double noise : {kNoise, kNoise / 5}) {  // the less, the smaller a change is reported
@@ -399,9 +422,11 @@ TEST(Describe, OfValuesWithoutNoiseIsThatOfTheValues) {
   EXPECT_EQ(description.changes[0].first_cycle, 61U);
   EXPECT_NEAR(description.changes[0].from, 5.0, 1e-12);
   EXPECT_NEAR(description.changes[0].to, 4.0, 1e-12);
-  Course still;
-  for (std::size_t cycle = 1; cycle <= 100; ++cycle) still.Add(cycle, 5.0);
-  EXPECT_FALSE(Describe(still).changed());
+  for (const double value : {5.0, 0.0}) {  // α of Jenkins' law is 0 in every row
+    Course still;
+    for (std::size_t cycle = 1; cycle <= 100; ++cycle) still.Add(cycle, value);
+    EXPECT_FALSE(Describe(still).changed()) << value;
+  }
 }
 
 }  // namespace

@@ -129,6 +129,19 @@ TEST_F(TrackCommand, RefusesToGoOnWhereTheLastBatchIsOfAnotherRecord) {
   ExpectKept(part, Track("part.csv", "other.csv"), "made from another record");
 }
 
+TEST_F(TrackCommand, RefusesToGoOnWithATableOfLessThanABatchOfAnotherTest) {
+  std::vector<std::string> lines = Lines(Whole());
+  lines.resize(30);
+  ExpectKept(Joined(lines), Track("part.csv") + "--average 2", "made from another record");
+  lines.back() = lines[1];  // the last row of a record that has grown since
+  ExpectCompleted(Joined(lines), Whole());
+}
+
+TEST_F(TrackCommand, NamesItsColumns) {
+  EXPECT_THAT(Done(Track("table.csv")).out,
+              HasSubstr("columns: displacement 'displacement [m]' (2), force 'force [N]' (3)"));
+}
+
 TEST_F(TrackCommand, WritesOverNothingUnasked) {
   const std::string whole = Whole();
   ExpectRefused(Track("whole.csv"), "--resume");

@@ -33,7 +33,8 @@ class Course {
 
   /// @param cycle   its number, larger than the last
   /// @param value   finite
-  void Add(std::size_t cycle, double value);
+  /// @param cycles  that the value is of, from that one on
+  void Add(std::size_t cycle, double value, std::size_t cycles = 1);
 
   [[nodiscard]] std::span<const Bin> bins() const { return bins_; }
   // The first and the last value that was added; of at least one.
