@@ -13,7 +13,8 @@ using convert::TargetRow;
 namespace {
 
 struct ConvertOptions {
-  std::string fit;  // file of `mindahl fit --json`: law and amplitude, unless given
+  std::string fit;  // file of `mindahl fit --json`, or a record: law and amplitude, unless given
+  io::RecordColumns columns;  // of the record
   LawOptions law;
   std::optional<double> amplitude;  // X [m] of the contact's steady loop
   std::string from;                 // "masing", "dahl" or "": that of the fit, else masing
@@ -22,11 +23,14 @@ struct ConvertOptions {
   std::string input_lines_path;
 };
 
-/// Reads what `mindahl fit --json` wrote.
-Json ReadFit(const std::string& file) {
+/// Reads what `mindahl fit --json` wrote, or fits a record.
+Json ReadFit(const std::string& file, const io::RecordColumns& columns) {
   std::ifstream stream(file);
-  if (!stream) Refuse("{}: cannot be read", file);
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (fit.is_discarded() && !file.ends_with(".json")) {
+    const FitRequest request{.files = {file}, .columns = columns};
+    return report::DocumentOf(FitRecords(request, ReadRecords(request)));
+  }
   const Json schema = report::At(fit, "/schema");
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
   Refuse("{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file);
@@ -80,7 +84,7 @@ void TakeLoad(const Json& fit, ConvertOptions& request) {
 }
 
 double Require(const std::optional<double>& value, std::string_view option) {
-  if (!value) Refuse("{} missing: give it, or the JSON file of a fit that determines it", option);
+  if (!value) Refuse("{} missing: give it, or a fit or record that determines it", option);
   return *value;
 }
 
@@ -95,7 +99,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   std::vector<std::string> left_out;  // terms of the fit that no target has
   if (!request.fit.empty()) {
-    const Json fit = ReadFit(request.fit);
+    const Json fit = ReadFit(request.fit, request.columns);
     TakeFit(fit, request);
     const bool has_load = target.form == convert::Form::kSpring && !given.law.slip_force;
     if (has_load) TakeLoad(fit, request);
@@ -189,7 +193,9 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       &RunConvert);
   const OptionGroup contact(command, "The contact");
   contact.Add("fit", options.fit,
-              "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
+              "what mindahl fit --json wrote, or a record to fit: law and amplitude,\nunless "
+              "given below",
+              "FILE");
   AddLawParameters(contact, options.law);
   contact.AddWord(
       "--from", options.from, {"masing", "dahl"},
@@ -198,6 +204,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   contact.AddQuantity("--amplitude", options.amplitude,
                       "amplitude X of the contact's steady loop [m], without the rig's travel", "M",
                       "m");
+  AddColumnOptions(command, options.columns);
   const OptionGroup result(command, "What it becomes");
   result
       .AddWord("--to", options.to, NamesOf(convert::Targets(), &TargetRow::name), "law or program")

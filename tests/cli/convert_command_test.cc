@@ -57,6 +57,13 @@ TEST_F(Convert, TakesAFit) {
   EXPECT_GT(made["amplitude"], 0.0);
 }
 
+TEST_F(Convert, FitsARecordWithTheColumnsThatAreChosen) {
+  const json fitted = JsonOf("fit " + SampleRecord());
+  const json made = JsonOf("convert --to dahl --displacement 2 --force 3 " + SampleRecord());
+  EXPECT_EQ(made["from"]["sigma"], Value(fitted, "sigma"));
+  EXPECT_EQ(made["from"]["slip_force"], Value(fitted, "slip_force"));
+}
+
 TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   const auto command = [&](const std::string& text) {
     return "convert --to lammps " + Write("written.json", text) + " ";
@@ -80,7 +87,7 @@ TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   EXPECT_EQ(given["from"]["law"], "masing");
   EXPECT_EQ(given["amplitude"], 1e-6);
   ExpectRefused(command(fit("not_identifiable")),
-                "--alpha missing: give it, or the JSON file of a fit that determines it");
+                "--alpha missing: give it, or a fit or record that determines it");
   Done(command(fit("not_identifiable")) + "--alpha 0.3");
   ExpectRefused(command("x,F\n1,2\n"), "is not the result of a fit");
   ExpectRefused(command("{}"), "is not the result of a fit");

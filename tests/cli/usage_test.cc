@@ -164,7 +164,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"validate --cases 0 --json #", "--cases: Value 0 not in range"},
     {"validate --cases 1 --json /no/such/v.json", "there is no directory"},
     {"convert --amplitude 1e-6 --to dahl", "--sigma"},
-    {"convert --to dahl", "--sigma missing: give it, or the JSON file of a fit"},
+    {"convert --to dahl", "--sigma missing: give it, or a fit or record"},
     {"convert ~ --amplitude 1 --to lugree", "--to: lugree not in {masing,"},
     {"convert ~ --amplitude -1 --to dahl", "amplitude [m] = -1"},
     {"convert ~ --amplitude 1 --to lammps --input-lines -", "--normal-load"},
