@@ -44,7 +44,7 @@ using request::Strictness;
 
 /// Adds a command to the program. Before running, it refuses outputs that are not writable, that
 /// name one file twice, or that are also inputs. An option whose value is called PATH or DIR writes
-/// there, "-" to standard output; one called FILE is read.
+/// there, "-" to standard output where its help says so; one called FILE is read.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
 ///                  continues the last begins with blanks
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,

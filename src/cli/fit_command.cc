@@ -16,10 +16,11 @@ void RunFit(const FitCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
   RequireDistinctFiles(request.files);
   const report::Report report = request::FitRecords(request, request::ReadRecords(request));
-  console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const bool failed = report.failed();  // then there is no curve to draw, no residual to list
-  if (failed) {
-    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
+  const std::string fault = WhyNotEstablished(report.fit, options.strict);
+  if (!fault.empty()) {
+    console.exit_status = kNotEstablished;
+    Say("fit", {(failed ? "the fit failed: " : "") + fault}, console);
   }
   // The plot first: it alone may still fail.
   if (!failed && !options.plot_path.empty()) {

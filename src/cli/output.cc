@@ -69,6 +69,10 @@ void RequireOutputs(const CLI::App& command) {
     const std::string option = each->get_name();
     const std::string& path = each->results().back();
     if (path.empty()) continue;
+    const bool is_for_output = each->get_description().find("standard output") != std::string::npos;
+    if (path == "-" && !is_for_output) {
+      Refuse("{}: '-' is standard output, where this does not go: name a file", option);
+    }
     if (path != "-" && type == "PATH") RequireWritable(option, path);
     if (option == "--plot") io::RequirePlotName(path);
     for (const std::string& input : inputs) {

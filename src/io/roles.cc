@@ -203,7 +203,11 @@ class RoleAssigner {
     const std::array is_found = {IsMissing(kPair[0]), IsMissing(kPair[1])};
     const bool turns = SuitAsAngleAndTorque();
     for (const Role role : kPair) TakeBest(role, turns);
-    if (!asked.sample_rate) TakeBest(Role::kTime);
+    if (!asked.sample_rate) {
+      TakeBest(Role::kTime);
+    } else if (const auto time = BestTime(table_)) {
+      Note("the times are those of --sample-rate, not of {}", table_.Label(*time));
+    }
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     for (const std::string& covariate : asked.covariates) {
       taken_[ReadCovariate(covariate, table_)] = true;

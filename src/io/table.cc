@@ -337,8 +337,10 @@ std::string CsvTable::Label(std::size_t column) const {
 }
 
 std::string CsvTable::Listing() const {
-  Strings listed(columns.size());
-  for (std::size_t column = 0; column < columns.size(); ++column) listed[column] = Label(column);
+  constexpr std::size_t kMost = 20;
+  Strings listed(std::min(columns.size(), kMost));
+  for (std::size_t column = 0; column < listed.size(); ++column) listed[column] = Label(column);
+  if (columns.size() > kMost) listed.push_back(fmt::format("… {} in all", columns.size()));
   return fmt::format("the columns are {}", fmt::join(listed, ", "));
 }
 

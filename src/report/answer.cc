@@ -130,24 +130,10 @@ class Writer {
   }
 
   void AddColumns() {
-    const io::RecordFile& first = report_.records.front();
-    std::vector<std::string> columns;
-    const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
-      if (!column) return;
-      const bool has_unit =
-          !column.has_no_unit && column.name.find(column.unit) != std::string::npos;
-      columns.push_back(fmt::format(
-          "{}{} ({}{}){}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
-          column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit));
-    };
-    const bool is_torsional = report_.is_torsional();
-    add(is_torsional ? "angle" : "displacement", first.displacement, "");
-    add(is_torsional ? "torque" : "force", first.force,
-        fit_.force_sense < 0 ? ", opposite sign" : "");
-    add("load", first.normal_load, "");
+    const std::string columns = ColumnsText(report_.records.front(), fit_.force_sense);
     const std::string name = NameOf(report_.files());
     if (columns.empty()) return Add("record", name);
-    Add("columns", fmt::format("{}: {}", name, fmt::join(columns, ", ")));
+    Add("columns", fmt::format("{}: {}", name, columns));
   }
 
   /// Says what was assumed of the files: one thing in full, of more how many.
@@ -273,8 +259,8 @@ class Writer {
       }
       parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
       parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
-      parts.push_back(
-          fmt::format("{} cycle{}", facts.complete_cycles, facts.complete_cycles == 1 ? "" : "s"));
+      parts.push_back(fmt::format("{} closed cycle{}", facts.steady_cycles,
+                                  facts.steady_cycles == 1 ? "" : "s"));
       if (loop::Slides(facts)) parts.emplace_back("it slides");
     } else {
       parts = {"±" + Quantity(facts.amplitude, units.displacement, 4),
@@ -289,7 +275,8 @@ class Writer {
   void AddLeftOut() {
     std::vector<std::string> parts;
     for (const LeftOut& part : report_.left_out) {
-      parts.push_back(part.first == 0 ? fmt::format("{} samples ({})", part.samples, part.why)
+      parts.push_back(part.first == 0 ? fmt::format("{} row{} ({})", part.samples,
+                                                    part.samples == 1 ? "" : "s", part.why)
                       : part.first == part.last
                           ? fmt::format("line {} ({})", part.first, part.why)
                           : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
@@ -309,8 +296,7 @@ class Writer {
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
     for (const Finding& finding : fit_.findings) {
-      const bool is_note =
-          finding.severity == identification::Severity::kNote && finding.code != "shape_or_rig";
+      const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
       if (is_note || is_moot || said_.contains(&finding) || IsSaidByALine(finding.code)) continue;
       Add("note", WarningText(finding, report_), kPoor);
@@ -344,6 +330,21 @@ std::string LinesText(const std::vector<Line>& lines) {
 
 }  // namespace
 
+std::string ColumnsText(const io::RecordFile& file, int force_sense) {
+  std::vector<std::string> columns;
+  const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
+    if (!column) return;
+    const bool has_unit = !column.has_no_unit && column.name.find(column.unit) != std::string::npos;
+    columns.push_back(fmt::format(
+        "{}{} ({}{}){}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
+        column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit));
+  };
+  add(file.is_torsional ? "angle" : "displacement", file.displacement, "");
+  add(file.is_torsional ? "torque" : "force", file.force, force_sense < 0 ? ", opposite sign" : "");
+  add("load", file.normal_load, "");
+  return fmt::format("{}", fmt::join(columns, ", "));
+}
+
 std::string MisfitStatement(const Report& report) {
   const FitResult& fit = report.fit;
   if (!fit.converged) return "not converged: " + fit.solver.message;
@@ -363,6 +364,10 @@ std::string MisfitStatement(const Report& report) {
   constexpr double kMostOfIt = 0.5;  // is the same at one place of every stroke
   if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
+    if (fit.FindFinding("search_limit") != nullptr &&
+        adequacy.p_value >= report.options.thresholds.doubt) {
+      return rms + " rms, like noise, but the search stopped at a limit of its own";
+    }
     const bool is_included =
         std::ranges::any_of(fit.parameters, &ParameterEstimate::includes_discrepancy);
     return text + ": the law is not the whole story" +

@@ -152,7 +152,7 @@ Json TermsJson(const Report& report) {
     });
   }
   Json added = ListOf(AddedTerms(report), [](const auto* term) -> Json { return term->name; });
-  const char* const mode = !considered.empty() ? "auto" : added.empty() ? "none" : "named";
+  const char* const mode = report.terms ? "auto" : added.empty() ? "none" : "named";
   return {{"mode", mode}, {"considered", std::move(considered)}, {"added", std::move(added)}};
 }
 
@@ -171,7 +171,7 @@ Reasons ReasonsOf(const Report& report) {
   if (report.failed()) return {{"", "the fit failed: " + report.fit.solver.message}};
   return {{"", "not a finite number"},
           {"input.columns", "the file has none, or it is not used"},
-          {"input.left_out", "they are not in a row"},
+          {"input.left_out", "they are not in a row, or no samples"},
           {"correlation", "one of the two is not fitted, or has no error"},
           {"parameters", "it is held, or the record does not determine it"},
           {"adequacy", "it is not judged, or no half gap is measured"},
@@ -248,7 +248,7 @@ Json DocumentOf(const Report& report) {
         {"termination", fit.solver.termination},
         {"converged", fit.converged},
         {"iterations", fit.solver.iterations},
-        {"final_cost", NumberOrNull(fit.solver.final_cost)}}},
+        {"final_cost", report.failed() ? Json() : NumberOrNull(fit.solver.final_cost)}}},
       {"adequacy", AdequacyJson(report)},
       {"measured", MeasuredJson(report)},
       {"law", LawChoiceJson(fit.law_choice)},
@@ -287,7 +287,9 @@ Json ComparedModels(const Report& report) {
 std::vector<const ParameterEstimate*> AddedTerms(const Report& report) {
   std::vector<const ParameterEstimate*> terms;
   for (const ParameterEstimate& estimate : report.fit.parameters) {
-    const std::string_view name = identification::TermNameOf(estimate.name);
+    const bool is_column = estimate.name.starts_with(identification::NameOfCovariate(""));
+    const std::string_view name =
+        is_column ? estimate.name : identification::TermNameOf(estimate.name);
     constexpr auto kOfEveryFit = std::to_array<std::string_view>(
         {"sigma", "alpha", "slip_force", "load_exponent", "force_offset", "displacement_offset"});
     if (std::ranges::find(kOfEveryFit, name) != kOfEveryFit.end()) continue;

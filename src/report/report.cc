@@ -29,23 +29,25 @@ void TranslateToTorque(Report& report) {
   }
 }
 
-/// Adds faults to what is left out: each run of them where they are few.
-void LeaveOutFaults(const RecordFit& fit, const io::RecordFile& file, std::vector<LeftOut>& out) {
+/// Adds samples, in their order, to what is left out: each run of them where they are few.
+void LeaveOut(std::span<const std::size_t> samples, const io::RecordFile& file, const char* why,
+              std::vector<LeftOut>& out) {
   constexpr std::size_t kFew = 5;
   std::vector<LeftOut> runs;
-  for (std::size_t k = 0; k < fit.glitches.size(); ++k) {
-    const std::size_t line = file.LineOf(fit.glitches[k]);
-    if (k == 0 || fit.glitches[k] != fit.glitches[k - 1] + 1) {
-      runs.push_back({.file = file.name, .first = line, .why = "faults"});
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t line = file.LineOf(samples[k]);
+    if (k == 0 || samples[k] != samples[k - 1] + 1) {
+      runs.push_back({.file = file.name, .first = line, .why = why});
     }
     runs.back().last = line;
     ++runs.back().samples;
   }
-  if (runs.size() > kFew) runs = {{file.name, fit.glitches.size(), 0, 0, "faults"}};
+  if (runs.size() > kFew) runs = {{file.name, samples.size(), 0, 0, why}};
   out.insert(out.end(), runs.begin(), runs.end());
 }
 
-/// Counts the samples, and adds those of the records that do not count to what is left out.
+/// Counts the samples, and adds those of the records that do not count to what is left out, and the
+/// rows that were no samples.
 void CountSamples(Report& report) {
   for (const LeftOut& part : report.left_out) report.samples += part.samples;
   const loop::PreparationOptions& chosen = report.options.preparation;
@@ -54,10 +56,14 @@ void CountSamples(Report& report) {
     const RecordFit& fit = report.fit.records[r];
     const io::RecordFile& file = report.records[r];
     report.samples += file.record.size();
-    LeaveOutFaults(fit, file, report.left_out);
-    const std::size_t others = fit.left_out - std::min(fit.left_out, fit.glitches.size());
-    if (others > 0) {
-      report.left_out.push_back({file.name, others, 0, 0, is_selected ? "selection" : "lag"});
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < fit.counts.size(); ++i) {
+      if (fit.counts[i] == 0 && !std::ranges::binary_search(fit.glitches, i)) others.push_back(i);
+    }
+    LeaveOut(fit.glitches, file, "faults", report.left_out);
+    LeaveOut(others, file, is_selected ? "selection" : "lag", report.left_out);
+    if (file.left_out.count > 0) {
+      report.left_out.push_back({file.name, file.left_out.count, 0, 0, "not whole"});
     }
   }
 }

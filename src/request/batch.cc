@@ -160,16 +160,12 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
     const report::Report report = fit();
     entry.notes = report.notes;
     entry.fit = ToJson(report);
-    entry.done = Established(report.fit, strictness);
+    fault = WhyNotEstablished(report.fit, strictness);
+    entry.done = fault.empty();
     entry.verdict = report::VerdictWord(report);
     for (const char* parameter : report::kLawParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
       if (estimate != nullptr) entry.parameters.push_back(report::ValueText(*estimate));
-    }
-    if (!entry.done) {
-      fault = report.fit.converged ? "not established: the model is not adequate or a free "
-                                     "parameter not identifiable"
-                                   : report.fit.solver.message;
     }
   } catch (const InputError& error) {
     fault = error.what();

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/refuse.h"
+#include "loop/statistics.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/term_selection.h"
@@ -97,6 +98,21 @@ void KeepTests(const FitRequest& request, FitOptions& options, report::ReportInp
   }
   if (all_cycled && !options.initial_state) {
     options.initial_state = models::InitialState::kSteady;
+  }
+}
+
+/// Notes each file whose column of the normal load has another mean than the load that is given.
+void NoteOtherLoads(const FitOptions& options, report::ReportInput& input) {
+  const std::vector<double>& given = options.normal_loads;
+  for (std::size_t r = 0; r < input.records.size() && !given.empty(); ++r) {
+    const RecordFile& file = input.records[r];
+    const double taken = given[std::min(r, given.size() - 1)];
+    const double mean =
+        file.record.normal_load.empty() ? taken : loop::Mean(file.record.normal_load);
+    if (std::abs(mean / taken - 1) <= options.thresholds.load_change) continue;
+    input.notes.push_back(
+        fmt::format("{}: the mean load is {:.6g} N as given, not {:.6g} N as in its column",
+                    file.name, taken, mean));
   }
 }
 
@@ -275,8 +291,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   const bool is_other_law = fit.law_choice && fit.law_choice->prefers_alternative();
   if (!fit.converged || !(before > kLeastMisfit) || is_other_law ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
-      fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
-      !options.terms.empty() || !options.covariates.empty()) {
+      fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr) {
     return std::nullopt;
   }
   if (fit.EncoderStep() > options.thresholds.coarse_step * fit.WidestRecord().facts.amplitude) {
@@ -320,18 +335,23 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
                      fmt::join(selection.added, ", "));
 }
 
-bool Established(const FitResult& fit, Strictness strictness) {
-  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
+std::string WhyNotEstablished(const FitResult& fit, Strictness strictness) {
+  if (!fit.converged) return fit.solver.message;
+  if (strictness == Strictness::kNone) return "";
   const bool is_strict = strictness == Strictness::kAdequate;
-  const auto is_established = [&](const ParameterEstimate& estimate) {
-    return estimate.status == ParameterStatus::kFixed ||
-           (is_strict ? estimate.identifiability == Identifiability::kIdentifiable
-                      : estimate.is_known());
-  };
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  return (is_strict ? verdict == AdequacyVerdict::kAdequate
-                    : verdict != AdequacyVerdict::kInadequate) &&
-         std::ranges::all_of(fit.parameters, is_established);
+  if (is_strict ? verdict != AdequacyVerdict::kAdequate : verdict == AdequacyVerdict::kInadequate) {
+    return "not established: the model is not adequate";
+  }
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    const bool is_established =
+        estimate.status == ParameterStatus::kFixed ||
+        (is_strict ? estimate.identifiability == Identifiability::kIdentifiable
+                   : estimate.is_known());
+    if (!is_established)
+      return fmt::format("not established: {} is not identifiable", estimate.name);
+  }
+  return "";
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {
@@ -394,6 +414,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     asked.fit.adequacy.causes.clear();
     made.next.reset();
   }
+  NoteOtherLoads(options, made);
   std::optional<contact::UncertainValue>& load = made.known.normal_load;
   if (!load && asked.fit.normal_load) {
     load = *asked.fit.normal_load;

@@ -22,7 +22,9 @@ TEST_F(FitCommand, OfALoopThatDoesNotSlipExitsWithThreeWhereStrictAndKnowsNoFric
   EXPECT_TRUE(loaded["contact"]["friction_coefficient"]["value"].is_null());
   EXPECT_THAT(WhyNull(loaded, "contact.friction_coefficient.value"),
               HasSubstr("a parameter that is open"));
-  EXPECT_EQ(RunCommand(fit + "--strict").status, kNotEstablished);
+  const Outcome strict = RunCommand(fit + "--strict");
+  EXPECT_EQ(strict.status, kNotEstablished);
+  EXPECT_THAT(strict.err, HasSubstr("not established: alpha is not identifiable"));
   Done("fit " + SampleRecord() + " --strict");
 }
 
@@ -40,6 +42,49 @@ TEST(FitJson, OfAFitThatFailedIsWrittenWithStatusThree) {
   EXPECT_EQ(outcome.Json()["solver"]["converged"], false);
   EXPECT_TRUE(outcome.Json()["parameters"]["sigma"]["value"].is_null());
   EXPECT_THAT(WhyNull(outcome.Json(), "residuals.rms"), StartsWith("the fit failed: "));
+  EXPECT_THAT(WhyNull(outcome.Json(), "solver.final_cost"), StartsWith("the fit failed: "));
+}
+
+TEST(FitJson, KnowsAsMuchOfAParameterWhateverTheConfidence) {
+  const std::string fit = "fit " MINDAHL_SOURCE_DIR "/data/behind_a_rig.csv --confidence ";
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    const json known = JsonOf(fit + "0.95")["parameters"][name]["identifiability"];
+    EXPECT_EQ(JsonOf(fit + "0.5")["parameters"][name]["identifiability"], known) << name;
+  }
+}
+
+TEST(FitJson, SaysWhetherTermsWereChosenAndWhichAreHeld) {
+  const json chosen = JsonOf("fit " + SampleRecord() + " --terms auto");
+  EXPECT_EQ(chosen["terms"]["mode"], "auto") << "of a record that requires none";
+  const json held = JsonOf("fit " + SampleRecord() + " --covariate 1=0");
+  EXPECT_EQ(held["terms"]["mode"], "named");
+  EXPECT_EQ(held["terms"]["added"], json({"covariate_1"}));
+}
+
+TEST_F(FitCommand, ListsTheLinesThatAreLeftOut) {
+  std::vector<std::string> lines = Lines(FileContent(SampleRecord()));
+  lines.at(200) = "0.5,,";
+  const std::string file = Write("gap.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  const json fit = JsonOf("fit " + file + " --select samples=101:601");
+  const json& left_out = fit["input"]["left_out"];
+  ASSERT_EQ(left_out.size(), 2U);
+  EXPECT_EQ(left_out[0]["why"], "selection");
+  EXPECT_EQ(left_out[0]["first"], 2);
+  EXPECT_EQ(left_out[0]["last"], 101);
+  EXPECT_EQ(left_out[1]["why"], "not whole");
+  EXPECT_EQ(left_out[1]["samples"], 1);
+}
+
+TEST_F(FitCommand, NotesTimesAndLoadsThatItDoesNotTakeFromTheFile) {
+  const Outcome outcome = Done("fit " + SampleRecord() + " --sample-rate 1000");
+  EXPECT_THAT(outcome.out, HasSubstr("the times are those of --sample-rate,"));
+  std::string loaded;
+  for (const std::string& line : Lines(FileContent(SampleRecord()))) {
+    loaded += line + (loaded.empty() ? ",normal load [N]\n" : ",50\n");
+  }
+  const std::string fit = "fit " + Write("loaded.csv", loaded) + " --normal-load ";
+  EXPECT_THAT(Done(fit + "60").out, HasSubstr("the mean load is 60 N as given, not 50 N"));
+  EXPECT_THAT(Done(fit + "50").out, Not(HasSubstr("as given")));
 }
 
 TEST_F(FitCommand, WritesItsJsonAloneToStdoutAndTheSameToAFileInEveryDigit) {

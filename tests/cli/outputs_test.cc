@@ -71,6 +71,15 @@ TEST(StandardOutput, ThatIsFullOrClosedIsAnError) {
   EXPECT_EQ(RunCommand("fit " + SampleRecord() + " --json /dev/full").status, kBadInput);
 }
 
+TEST_F(Outputs, ToStandardOutputAreThoseOfTextAlone) {
+  for (const char* option : {"--residuals", "--report"}) {
+    ExpectRefused("fit " + SampleRecord() + " " + option + " -",
+                  std::string(option) + ": '-' is standard output");
+  }
+  ExpectRefused("batch " + SampleRecord() + " --output -", "--output: '-' is standard output");
+  EXPECT_THAT(Done("simulate --lambda 1 --output -" + kMindlinOptions).out, StartsWith("time"));
+}
+
 TEST_F(ReportPage, OfAFitSaysTheVerdictAndWhatItWasMadeFrom) {
   const std::string record = Copy("it's <loop>.csv");
   const std::string config = Write("fit.toml", "terms = \"force_drift\"\n");

@@ -107,6 +107,18 @@ TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
   EXPECT_EQ(file.record.force, (Numbers{2.5e-3}));
 }
 
+TEST(RecordReader, ListsNoMoreThanTwentyColumns) {
+  std::string header = "zz1";
+  std::string row = "1";
+  for (int column = 2; column <= 22; ++column) {
+    header += fmt::format(",zz{}", column);
+    row += ",1";
+  }
+  EXPECT_THAT(
+      MessageOf<InputError>([&] { Read(header + '\n' + row + '\n'); }),
+      AllOf(HasSubstr("'zz20' (column 20), … 22 in all: choose it with"), Not(HasSubstr("zz21"))));
+}
+
 TEST(RecordReader, NotesWhatItAssumes) {
   EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
             (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m; "

@@ -297,8 +297,8 @@ TEST(Answer, NamesAModulusThatNoSolidHasBeforeTheUnitOfTheDisplacement) {
 TEST(Answer, OfALoadSeriesThatARigMayBendDoesNotRejectHertz) {
   ReportInput input = MadeInput();
   auto& exponent = testing::AddParameter(input.fit, "load_exponent", "-", 0.216, 0.002);
-  exponent.upper95 = 0.333;
   EXPECT_THAT(LineOf(input, "load"), HasSubstr("Hertz's 1/3 is rejected"));
+  exponent.upper95 = 0.334;
   input.fit.findings = {{.code = "shape_or_rig", .numbers = {{"rig_stiffness", 8e7}}}};
   EXPECT_THAT(LineOf(input, "load"), HasSubstr("Hertz's 1/3 fits in a compliant rig"));
   input.fit.parameters.back().upper95 = 0.3;
@@ -317,6 +317,16 @@ TEST(Answer, HasTheNextStepThatWasTried) {
   input.next->is_over_amplitude = true;
   EXPECT_THAT(LineOf(input, "next"),
               HasSubstr("misfit 20 % of the half gap → 10 % of the amplitude (tried)"));
+}
+
+TEST(Answer, SaysOfASearchThatEndedAtALimitWhatTheResidualsAre) {
+  ReportInput input = Doubtful();
+  input.fit.adequacy.p_value = 1.0;
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("not the whole story"));
+  input.fit.findings = {{.code = "search_limit", .parameters = {"speed_exponent"}}};
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("like noise, but the search stopped at a limit"));
+  input.fit.adequacy.p_value = 1e-6;
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("not the whole story"));
 }
 
 TEST(Answer, StatesAMisfitAsAFractionOfTheHalfGap) {

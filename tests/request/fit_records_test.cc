@@ -255,6 +255,25 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
               AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
 }
 
+TEST(NextStep, GoesOnFromTermsThatAreNamed) {
+  Generator generator(4);
+  io::RecordFile file =
+      SineFile("mindlin-dahl", {4e7, 1.0 / 3, 40.0}, 4e-6, testing::Sine(3, 200), 0.1, generator);
+  for (std::size_t i = 0; i < file.record.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
+    file.record.force[i] += 2 * std::cos(phase);
+    file.record.time.push_back(0.005 * static_cast<double>(i));
+  }
+  FitRequest request;
+  request.terms = {"lag"};
+  const report::Report made = FitRecords(request, {file});
+  ASSERT_TRUE(made.next);
+  EXPECT_THAT(made.next->options, StartsWith("--terms viscous"));
+  request.terms.emplace_back("viscous");
+  const identification::FitResult followed = FitRecords(request, {file}).fit;
+  EXPECT_DOUBLE_EQ(made.next->misfit_after, *followed.adequacy.misfit_over_half_gap);
+}
+
 TEST(NextStep, LiesWithinTheIntervals) {
   // A rig as stiff as twice the contact changes its shape by more than a step to first order says.
   constexpr models::BranchLaw kContact{4e7, 0.7, 40.0};

@@ -156,14 +156,15 @@ TEST(Established, IsWhatConvergedAndWhereStrictIsKnownByAModelThatDescribesIt) {
     identification::ParameterEstimate& sigma = fit.parameters.emplace_back();
     sigma.status = identification::ParameterStatus::kFree;
     sigma.identifiability = row.identifiability;
-    EXPECT_TRUE(Established(fit, Strictness::kNone));
-    EXPECT_EQ(Established(fit, Strictness::kDoubtful), row.doubtful);
-    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.adequate);
+    EXPECT_EQ(WhyNotEstablished(fit, Strictness::kNone), "");
+    EXPECT_EQ(WhyNotEstablished(fit, Strictness::kDoubtful).empty(), row.doubtful);
+    EXPECT_EQ(WhyNotEstablished(fit, Strictness::kAdequate).empty(), row.adequate);
     sigma.status = identification::ParameterStatus::kFixed;
-    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.verdict == AdequacyVerdict::kAdequate)
+    EXPECT_EQ(WhyNotEstablished(fit, Strictness::kAdequate).empty(),
+              row.verdict == AdequacyVerdict::kAdequate)
         << "one that is held";
     fit.converged = false;
-    EXPECT_FALSE(Established(fit, Strictness::kNone));
+    EXPECT_NE(WhyNotEstablished(fit, Strictness::kNone), "");
   }
 }
 

@@ -87,7 +87,7 @@ std::string FindingsText(const FitResult& fit) {
     text += fmt::format(" {}{}{}", finding.code, finding.kind.empty() ? "" : "/", finding.kind);
     if (!finding.parameters.empty())
       text += fmt::format(" [{}]", fmt::join(finding.parameters, ", "));
-    if (finding.severity == Severity::kNote) text += " (note)";
+    if (finding.severity <= Severity::kAdvice) text += " (note)";
   }
   if (fit.findings.empty()) text += " none";
   text += fmt::format("\n   adequacy: {}, misfit {:.2g} of the noise, p = {:.2g};",
@@ -138,7 +138,7 @@ Caution CautionOf(const FitResult& fit) {
   Caution caution;
   caution.no_answer = fit.parameters.empty() || !fit.converged;
   for (const Finding& finding : fit.findings) {
-    if (finding.severity == Severity::kNote) continue;
+    if (finding.severity <= Severity::kAdvice) continue;
     caution.warns = true;
     // An asymmetry is not asked of a clean one.
     const bool is_left_open = std::ranges::find(kLeftOpen, finding.code) != kLeftOpen.end();

@@ -12,6 +12,7 @@ namespace mindahl::identification {
 /// Names how much a finding matters to the user of the numbers.
 enum class Severity {
   kNote,     ///< worth knowing: the answer is valid
+  kAdvice,   ///< the answer is valid; a further measurement would make it sharper
   kWarning,  ///< something should be done, or a part of the answer is not valid
   kFailure,  ///< there is no valid answer
 };
@@ -51,7 +52,7 @@ inline constexpr auto kFindings = [] {
       {"unknown_past", kNotIdentifiable},
       {"search_limit", kNotIdentifiable},
       {"force_at_limit", kNotIdentifiable, kWarning, true},
-      {.code = "shape_or_rig", .severity = kNote},
+      {.code = "shape_or_rig", .severity = kAdvice},
       {.code = "prior_contradicted"},
       // about the law: under its own law a parameter is as well known as before
       {.code = "other_law", .holds_without_model = true},

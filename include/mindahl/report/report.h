@@ -79,6 +79,11 @@ struct Report : ReportInput {
   [[nodiscard]] std::optional<double> ValueOf(std::string_view quantity) const;
 };
 
+/// Names the columns that a record is from, "displacement 'x [m]' (2), force 'F [N]' (3)"; "" where
+/// it is from none.
+/// @param force_sense  −1: the file has the force with the opposite sign
+std::string ColumnsText(const io::RecordFile& file, int force_sense);
+
 /// Makes a report from a fit.
 /// @param input  one record for each record of the fit
 /// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,

@@ -16,7 +16,7 @@ namespace mindahl::request {
 struct BatchEntry {
   std::string file;
   std::string fault = {};                    ///< why it is not done; "" where it is
-  bool done = false;                         ///< fitted, and Established()
+  bool done = false;                         ///< fitted, and nothing in WhyNotEstablished()
   std::string fit = {};                      ///< its JSON, as `mindahl fit --json` writes it; or ""
   std::vector<std::string> notes = {};       ///< assumptions of the run, one sentence each
   std::string verdict = {};                  ///< one word for the fit's adequacy

@@ -45,8 +45,8 @@ enum class Strictness {
   kAdequate,  ///< also that the model is adequate and every free parameter identifiable
 };
 
-/// True if a fit is established, for the exit status.
-bool Established(const identification::FitResult& fit, Strictness strictness);
+/// Says why a fit is not established, for the exit status; "" where it is.
+std::string WhyNotEstablished(const identification::FitResult& fit, Strictness strictness);
 
 /// Adds the terms that the first cycles of a test require to the options of its cycles' fits, where
 /// the request leaves them to be chosen.

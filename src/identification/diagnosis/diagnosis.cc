@@ -140,9 +140,10 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
-  // What is known does not depend on the confidence that is asked for.
-  const double to_95 = StudentQuantile(result.degrees_of_freedom, 0.95) /
-                       StudentQuantile(result.degrees_of_freedom, result.confidence);
+  // What is known does not depend on the confidence that is asked for, nor does what a model
+  // misses.
+  const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
+                           StudentQuantile(result.degrees_of_freedom, result.confidence);
   const bool hides = HidesInSpring(result);
   for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
@@ -151,6 +152,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     }
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
+    const double to_95 = estimate.includes_discrepancy ? 1.0 : quantiles;
     // Beside a spring the value may be at the lower end: the ratio is then that of an interval as
     // wide on its other side.
     const double ratio = hides
