@@ -85,7 +85,6 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   Noise noise;
   FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
   solution.theta = theta;
-  solution.side = SidesAt(problem.parameters, theta);
   const Estimates estimates(problem, solution, noise, options,
                             LinearizeAt(problem, theta, problem.parameters.free()));
   ExpectedFit result;

@@ -63,8 +63,9 @@ bool IsUnloadedAtLimit(const Candidate& candidate) {
   if (!std::isfinite(candidate.solution.sum_of_squares)) return false;  // none was made
   const Parameters& parameters = candidate.problem.parameters;
   for (std::size_t r = 0; r < candidate.problem.data->records.size(); ++r) {
-    const std::size_t origin = parameters.PositionOfOrigin(r);
-    if (IsSearchLimit(parameters[origin], candidate.solution.side[origin])) return true;
+    const std::size_t p = parameters.PositionOfOrigin(r);
+    const BoundSide side = SideOf(parameters[p], candidate.solution.theta[p]);
+    if (IsSearchLimit(parameters[p], side)) return true;
   }
   return false;
 }

@@ -98,7 +98,8 @@ TEST(Estimates, AtABoundReachOneSidedFromIt) {
     Stages stages(NoisyLoop(5), options);
     const Solution solution = stages.Solve();
     const bool is_lower = bounds.lower > 0;
-    ASSERT_EQ(solution.side[kShape], is_lower ? BoundSide::kLower : BoundSide::kUpper);
+    ASSERT_EQ(SideOf(stages.problem.parameters[kShape], solution.theta[kShape]),
+              is_lower ? BoundSide::kLower : BoundSide::kUpper);
     const Noise noise = KnownNoise(1e-4, stages.data.counted);
     const Estimates estimates = testing::EstimatesOf(stages, solution, noise);
     const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);

@@ -72,7 +72,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   // Far from slip α rises with Tc; a bound on α holds Tc back, and not the data.
   Stages stages(NoisyLoop(0.5, 0.0005, 3), {.bounds = {{"alpha", {0.0, 0.7}}}});
   const Solution best = stages.Solve();
-  ASSERT_EQ(best.side[kShape], BoundSide::kInside);
+  ASSERT_EQ(SideOf(stages.problem.parameters[kShape], best.theta[kShape]), BoundSide::kInside);
   for (const double variance : {1e-6, 1e-3}) {
     const Noise noise = KnownNoise(variance, stages.data.counted);
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);

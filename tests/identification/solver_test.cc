@@ -17,7 +17,9 @@ double GradientAt(Stages& stages, const Solution& solution) {
   const auto& free = stages.problem.parameters.free();
   double worst = 0.0;
   for (std::size_t j = 0; j < free.size(); ++j) {
-    if (solution.side[free[j]] != BoundSide::kInside) continue;
+    const std::size_t p = free[j];
+    const BoundSide side = SideOf(stages.problem.parameters[p], solution.theta[p]);
+    if (side != BoundSide::kInside) continue;
     const auto column = jacobian.col(static_cast<Eigen::Index>(j));
     worst = std::max(worst, std::abs(column.dot(residual)) / (column.norm() * residual.norm()));
   }
@@ -93,7 +95,7 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
   Stages stages(record, {.bounds = {{"force_offset", {-20.0, 3.0}}}});
   const Solution solution = stages.Solve();
   const std::size_t p = stages.problem.parameters.PositionOf(TermId::kForceOffset);
-  EXPECT_EQ(solution.side[p], BoundSide::kUpper);
+  EXPECT_EQ(SideOf(stages.problem.parameters[p], solution.theta[p]), BoundSide::kUpper);
   EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]), 3.0, 1e-12);
   EXPECT_LT(GradientAt(stages, solution), kStationary) << "of the others";
   EXPECT_NEAR(Stages(record, {.fixed = {{"force_offset", 3.0}}}).Solve().sum_of_squares /
@@ -103,7 +105,8 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
   Stages below(record, {.bounds = {{"slip_force", {1.0, 55.0}}}});
   const Solution at_bound = below.Solve();
   EXPECT_NEAR(below.problem.parameters[kSlipForce].ToValue(at_bound.theta[kSlipForce]), 55.0, 1e-7);
-  EXPECT_EQ(at_bound.side[kSlipForce], BoundSide::kUpper);
+  EXPECT_EQ(SideOf(below.problem.parameters[kSlipForce], at_bound.theta[kSlipForce]),
+            BoundSide::kUpper);
 }
 
 TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {

@@ -180,7 +180,8 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_limit_of_law = parameter.term->positive || p == kShape;
-    if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
+    const BoundSide side = SideOf(parameter, solution.theta[p]);
+    if (is_limit_of_law || !IsSearchLimit(parameter, side)) continue;
     Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
     for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
       if (problem.parameters[law].fixed) continue;

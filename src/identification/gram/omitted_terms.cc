@@ -88,7 +88,8 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds)
   auto [jacobian, residual] = WithPriors(problem, solution.theta, fitted.linearization());
   // A parameter at a bound, the user's or the program's, cannot move: its column explains nothing.
   for (std::size_t j = 0; j < free.size(); ++j) {
-    if (solution.side[free[j]] == BoundSide::kInside) continue;
+    const std::size_t p = free[j];
+    if (SideOf(problem.parameters[p], solution.theta[p]) == BoundSide::kInside) continue;
     jacobian.col(static_cast<Eigen::Index>(j)).setZero();
   }
   const auto law = static_cast<double>(jacobian.cols());

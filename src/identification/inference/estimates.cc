@@ -15,8 +15,9 @@ namespace mindahl::identification {
 
 namespace {
 
-ParameterStatus StatusOf(const Parameter& parameter, BoundSide side) {
+ParameterStatus StatusOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return ParameterStatus::kFixed;
+  const BoundSide side = SideOf(parameter, theta);
   if (side == BoundSide::kInside) return ParameterStatus::kFree;
   const bool mirrored = parameter.scale < 0;
   return (side == BoundSide::kLower) != mirrored ? ParameterStatus::kAtLowerBound
@@ -37,7 +38,7 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
                       .standard_error = {},
                       .lower95 = {},
                       .upper95 = {},
-                      .status = StatusOf(parameters[p], solution.side[p])});
+                      .status = StatusOf(parameters[p], solution.theta[p])});
   }
   return values;
 }
@@ -182,7 +183,7 @@ double Estimates::SamplesOf(std::size_t parameter) const {
 void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const Parameter& parameter = problem_.parameters[p];
   const double theta = solution_.theta[p];
-  const BoundSide side = solution_.side[p];
+  const BoundSide side = SideOf(parameter, theta);
   WithdrawInterval(estimate);
   if (parameter.fixed) return;
   const double error = ErrorOfTheta(p);

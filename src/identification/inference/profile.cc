@@ -98,7 +98,7 @@ class HeldParameter {
     });
     // With α at its upper bound, the bound limits Tc and the data do not: the interval stays open.
     const Parameter& shape = problem_.parameters[kShape];
-    if (towards > 0 && parameter_ == kSlipForce && !shape.fixed &&
+    if (towards > 0 && parameter_ == kSlipForce &&
         SideOf(shape, solution_.theta[kShape]) == BoundSide::kUpper) {
       return std::nullopt;
     }
@@ -158,7 +158,8 @@ bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
 std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
   const auto is_at_bound = [&](std::size_t p) {
-    return fitted.solution().side[p] != BoundSide::kInside;
+    const Parameter& parameter = fitted.problem().parameters[p];
+    return SideOf(parameter, fitted.solution().theta[p]) != BoundSide::kInside;
   };
   const auto is_badly_known = [&](std::size_t p) {
     return !(fitted.HalfWidth(p) <= options.thresholds.parabola_error);

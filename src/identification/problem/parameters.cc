@@ -183,6 +183,7 @@ double Parameter::ToTheta(double value) const {
 }
 
 BoundSide SideOf(const Parameter& parameter, double theta) {
+  if (parameter.fixed) return BoundSide::kInside;
   constexpr double kAtBound = 1e-9;
   constexpr double kWide = 1e3;
   const double distance = parameter.upper - parameter.lower;

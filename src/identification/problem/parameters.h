@@ -58,7 +58,7 @@ struct Parameter {
 enum class BoundSide { kInside, kLower, kUpper };
 
 /// The one definition of "at a bound": within 1e-9 of the bounds' distance, which counts as 1 to
-/// 1000.
+/// 1000. A parameter that is held lies inside.
 BoundSide SideOf(const Parameter& parameter, double theta);
 
 /// True if a parameter that lies at this side stopped at a bound of the program's own: neither the

@@ -217,12 +217,6 @@ bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
 
 }  // namespace
 
-std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta) {
-  std::vector<BoundSide> sides(theta.size(), BoundSide::kInside);
-  for (const std::size_t p : parameters.free()) sides[p] = SideOf(parameters[p], theta[p]);
-  return sides;
-}
-
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
   switch (loss) {
     case Loss::kHuber:
@@ -277,7 +271,6 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   solution.report.termination = ceres::TerminationTypeToString(summary.termination_type);
   solution.report.message = summary.message;
   solution.report.iterations += static_cast<int>(summary.iterations.size());
-  solution.side = SidesAt(problem.parameters, theta);
 }
 
 void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
@@ -352,7 +345,6 @@ void Solver::Solve(std::span<const double> start, const SolverOptions& options,
   solution.theta = residual_.Theta();
   solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
-  solution.side = SidesAt(parameters, solution.theta);
 }
 
 }  // namespace mindahl::identification

@@ -24,15 +24,11 @@ struct SolverOptions {
 };
 
 struct Solution {
-  std::vector<double> theta = {};    // of all parameters
-  std::vector<BoundSide> side = {};  // of all parameters
-  double sum_of_squares = 0.0;       // weighted
+  std::vector<double> theta = {};  // of all parameters
+  double sum_of_squares = 0.0;     // weighted
   bool converged = false;
   SolverReport report = {};  // costs in units of the data
 };
-
-/// Returns on which side of its bounds each parameter lies; one that is held lies inside.
-std::vector<BoundSide> SidesAt(const Parameters& parameters, std::span<const double> theta);
 
 /// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
 /// (Huber 1981; Holland & Welsch 1977): null for none.
