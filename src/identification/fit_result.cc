@@ -51,11 +51,6 @@ double FitResult::EncoderStep() const {
   return step;
 }
 
-double FitResult::ResponseNoise() const {
-  if (response == loop::Channel::kForce) return force_noise;
-  return records.empty() ? 0.0 : records.front().displacement_noise;
-}
-
 double FitResult::PeakForce() const {
   const RecordFit& widest = WidestRecord();
   // The force of a joint follows its load: under the mean one it is that of the law's steady loop.

@@ -207,7 +207,9 @@ bool TellsTheLaw(const FitResult& result) {
 double NoiseWithoutPriors(std::span<const RecordView> records, const FitOptions& options) {
   FitOptions open = options;
   open.priors.clear();
-  return Fitter(open).Fit(records, Depth::kEstimate).ResponseNoise();
+  const FitResult fit = Fitter(open).Fit(records, Depth::kEstimate);
+  if (fit.response == loop::Channel::kForce) return fit.force_noise;
+  return fit.records.front().displacement_noise;
 }
 
 /// Cuts intervals at bounds that are given: what the model misses and rivals widened them by.

@@ -166,9 +166,6 @@ struct FitResult {
   /// Returns the largest step of an encoder that read a displacement [m]; 0 where none did.
   [[nodiscard]] double EncoderStep() const;
 
-  /// Returns the noise of the fitted channel [N or m], its standard deviation, known or estimated.
-  [[nodiscard]] double ResponseNoise() const;
-
   /// Returns the largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
 
