@@ -310,18 +310,6 @@ bool IsInRecord(const Parameter& parameter, std::size_t record) {
   return !parameter.absent && (!parameter.term->is_of_record || parameter.record == record);
 }
 
-/// Adds a multiple of ColumnOf() of every sample.
-void AddColumnOf(const Problem& problem, std::size_t parameter, std::span<const double> theta,
-                 bool derivative, double factor, std::span<double> to) {
-  double* part = to.data();
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const ScaledRecord& record = problem.data->records[r];
-    Array rows(std::exchange(part, part + record.size()), std::ssize(record.force));
-    if (!IsInRecord(problem.parameters[parameter], r)) continue;
-    rows += factor * ColumnOf(problem, parameter, record, theta, derivative);
-  }
-}
-
 /// The derivative of scale·t over the scale by a parameter, in multiples of t and of derivatives
 /// of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
 struct ChainRule {
@@ -352,8 +340,14 @@ ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
 }  // namespace
 
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
-               double factor, std::span<double> to) {
-  AddColumnOf(problem, parameter, theta, /*derivative=*/false, factor, to);
+               double factor, std::span<double> to, bool derivative) {
+  double* part = to.data();
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    Array rows(std::exchange(part, part + record.size()), std::ssize(record.force));
+    if (!IsInRecord(problem.parameters[parameter], r)) continue;
+    rows += factor * ColumnOf(problem, parameter, record, theta, derivative);
+  }
 }
 
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
@@ -364,7 +358,7 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
   for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
     const Term& linear = *problem.parameters[q].term;
     if (!linear.is_linear || !linear.name.starts_with(term.shapes)) continue;
-    AddColumnOf(problem, q, theta, /*derivative=*/true, theta[q], to);
+    AddColumn(problem, q, theta, theta[q], to, /*derivative=*/true);
   }
 }
 

@@ -110,9 +110,10 @@ void Weight(const ScaledRecords& data, std::span<double> values);
 Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta);
 
 /// Adds a multiple of the column of a linear parameter, of every sample; no weight.
-/// @param theta  of all parameters: a column may depend on some (Term::shapes)
+/// @param theta       of all parameters: a column may depend on some (Term::shapes)
+/// @param derivative  adds the column's derivative by the parameter that shapes it instead
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
-               double factor, std::span<double> to);
+               double factor, std::span<double> to, bool derivative = false);
 
 /// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, of every sample, no weight: its own column where it is
 /// linear, else those of the columns that it shapes.
