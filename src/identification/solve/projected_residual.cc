@@ -1,49 +1,11 @@
 #include "identification/solve/projected_residual.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace mindahl::identification {
-
-// JᵀJ of unit columns = PᵀLDLᵀP; the rows are √D·Lᵀ·P, and those of the residual √D⁻¹·L⁻¹·P·Jᵀr.
-CompressedResidual::CompressedResidual(const Eigen::MatrixXd& normal,
-                                       const Eigen::VectorXd& gradient, double cost,
-                                       std::span<const unsigned char> frozen) {
-  // Pivots of unit columns below it are rounding: the direction has no effect.
-  constexpr double kNoEffect = 1e-15;
-  const Eigen::Index count = gradient.size();
-  Eigen::VectorXd norms(count);
-  Eigen::VectorXd slopes = gradient;
-  Eigen::MatrixXd correlation = normal;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const bool is_frozen = !frozen.empty() && frozen[static_cast<std::size_t>(j)] != 0;
-    norms[j] = !is_frozen && normal(j, j) > 0 ? std::sqrt(normal(j, j)) : 0.0;
-    const double inverse = norms[j] > 0 ? 1 / norms[j] : 0.0;
-    slopes[j] *= inverse;
-    correlation.row(j) *= inverse;
-    correlation.col(j) *= inverse;
-  }
-  const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
-  const Eigen::VectorXd pivots = factors.vectorD();
-  const Eigen::PermutationMatrix<Eigen::Dynamic> permutation(factors.transpositionsP());
-  Eigen::VectorXd explained = permutation * slopes;
-  factors.matrixL().solveInPlace(explained);
-  const Eigen::MatrixXd scales = norms.asDiagonal();
-  const Eigen::MatrixXd permuted = permutation * scales;
-  jacobian.setZero(count + 1, count);
-  jacobian.topRows(count) = factors.matrixU() * permuted;
-  residual.setZero(count + 1);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double root = pivots[k] > kNoEffect ? std::sqrt(pivots[k]) : 0.0;
-    jacobian.row(k) *= root;
-    residual[k] = root > 0 ? explained[k] / root : 0.0;
-  }
-  residual[count] = std::sqrt(std::max(cost - residual.squaredNorm(), 0.0));
-}
-
 namespace {
 
 /// A column as the problem's functions write it.

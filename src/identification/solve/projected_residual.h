@@ -9,31 +9,6 @@
 
 namespace mindahl::identification {
 
-/// A residual that refuses a trial: ½ of its square is beyond any cost that is finite, and finite.
-inline constexpr double kRefused = 1e150;
-
-/// n residuals of P coordinates as P + 1 with the same sum of squares, the same JᵀJ and the same
-/// Jᵀr: what a least-squares solver learns of them, at a cost that does not grow with n. The first
-/// P rows are what the Jacobian's columns explain of the residual, the last is what they do not.
-struct CompressedResidual {
-  CompressedResidual() = default;
-
-  /// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
-  /// @param gradient  Jᵀr
-  /// @param cost      rᵀr
-  /// @param frozen    1 for a coordinate whose column counts as 0; empty: none
-  CompressedResidual(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost,
-                     std::span<const unsigned char> frozen);
-
-  /// Returns by how much a Gauss–Newton step lowers the linearised sum of squares.
-  [[nodiscard]] double Explained() const {
-    return residual.head(residual.size() - 1).squaredNorm();
-  }
-
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;
-};
-
 /// The residual of a problem after variable projection (Golub & Pereyra 2003): linear parameters
 /// take their least-squares values at every point, and the residual depends on the others alone.
 /// Its Jacobian is Kaufman's: the derivatives of the response, orthogonal to the columns that are

@@ -4,6 +4,7 @@
 #include <ceres/normal_prior.h>
 #include <ceres/tiny_solver.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,67 @@ namespace {
 
 /// A full step is the last one if it can lower the cost by at most this fraction.
 constexpr double kLastStep = 1e-8;
+
+/// A residual that refuses a trial: ½ of its square is beyond any cost that is finite, and finite.
+constexpr double kRefused = 1e150;
+
+/// n residuals of P coordinates as P + 1 with the same sum of squares, the same JᵀJ and the same
+/// Jᵀr: what a least-squares solver learns of them, at a cost that does not grow with n. The first
+/// P rows are what the Jacobian's columns explain of the residual, the last is what they do not.
+struct CompressedResidual {
+  CompressedResidual() = default;
+
+  /// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
+  /// @param gradient  Jᵀr
+  /// @param cost      rᵀr
+  /// @param frozen    1 for a coordinate whose column counts as 0
+  CompressedResidual(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost,
+                     std::span<const unsigned char> frozen);
+
+  /// Returns by how much a Gauss–Newton step lowers the linearised sum of squares.
+  [[nodiscard]] double Explained() const {
+    return residual.head(residual.size() - 1).squaredNorm();
+  }
+
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+};
+
+// JᵀJ of unit columns = PᵀLDLᵀP; the rows are √D·Lᵀ·P, and those of the residual √D⁻¹·L⁻¹·P·Jᵀr.
+CompressedResidual::CompressedResidual(const Eigen::MatrixXd& normal,
+                                       const Eigen::VectorXd& gradient, double cost,
+                                       std::span<const unsigned char> frozen) {
+  // Pivots of unit columns below it are rounding: the direction has no effect.
+  constexpr double kNoEffect = 1e-15;
+  const Eigen::Index count = gradient.size();
+  Eigen::VectorXd norms(count);
+  Eigen::VectorXd slopes = gradient;
+  Eigen::MatrixXd correlation = normal;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const bool is_frozen = frozen[static_cast<std::size_t>(j)] != 0;
+    norms[j] = !is_frozen && normal(j, j) > 0 ? std::sqrt(normal(j, j)) : 0.0;
+    const double inverse = norms[j] > 0 ? 1 / norms[j] : 0.0;
+    slopes[j] *= inverse;
+    correlation.row(j) *= inverse;
+    correlation.col(j) *= inverse;
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
+  const Eigen::VectorXd pivots = factors.vectorD();
+  const Eigen::PermutationMatrix<Eigen::Dynamic> permutation(factors.transpositionsP());
+  Eigen::VectorXd explained = permutation * slopes;
+  factors.matrixL().solveInPlace(explained);
+  const Eigen::MatrixXd scales = norms.asDiagonal();
+  const Eigen::MatrixXd permuted = permutation * scales;
+  jacobian.setZero(count + 1, count);
+  jacobian.topRows(count) = factors.matrixU() * permuted;
+  residual.setZero(count + 1);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double root = pivots[k] > kNoEffect ? std::sqrt(pivots[k]) : 0.0;
+    jacobian.row(k) *= root;
+    residual[k] = root > 0 ? explained[k] / root : 0.0;
+  }
+  residual[count] = std::sqrt(std::max(cost - residual.squaredNorm(), 0.0));
+}
 
 /// ceres::TinySolver with what the searches of one start share.
 ///
