@@ -36,7 +36,7 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 
 /// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
 void RequireToldAsymmetry(const Problem& problem) {
-  if (!problem.parameters[RowOf(TermId::kAsymmetry)].confounded) return;
+  if (!problem.parameters[kAsymmetry].confounded) return;
   throw InvalidArgument(
       "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
       "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "

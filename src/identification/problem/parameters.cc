@@ -259,7 +259,7 @@ void Parameters::RequireTerms(const ScaledRecords& data) const {
 
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
-  Parameter& asymmetry = parameters_[RowOf(TermId::kAsymmetry)];
+  Parameter& asymmetry = parameters_[kAsymmetry];
   const bool any_zero_is_known = std::ranges::any_of(parameters_, [](const Parameter& parameter) {
     return parameter.term->id == TermId::kForceOffset && parameter.fixed;
   });
@@ -453,10 +453,6 @@ models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
 
 double Parameters::LoadExponentAt(std::span<const double> theta) const {
   return is_load_series() ? theta[kLoadExponent] : 1.0;
-}
-
-double Parameters::AsymmetryAt(std::span<const double> theta) const {
-  return theta[RowOf(TermId::kAsymmetry)];
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

@@ -73,6 +73,7 @@ inline constexpr std::size_t kSlipForce = RowOf(TermId::kSlipForce);
 inline constexpr std::size_t kRig = RowOf(TermId::kRigStiffness);
 inline constexpr std::size_t kSpring = RowOf(TermId::kPlateauSlope);
 inline constexpr std::size_t kLoadExponent = RowOf(TermId::kLoadExponent);
+inline constexpr std::size_t kAsymmetry = RowOf(TermId::kAsymmetry);
 
 /// Returns the term of where a contact is unloaded: the offset of the channel that is imposed.
 constexpr TermId OriginId(loop::Channel excitation) {
@@ -124,8 +125,6 @@ class Parameters {
   [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
   /// p of σ ∝ N^p; 1 where the records are under one load.
   [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const;
-  /// a of slip forces Tc(1 ± a); 0 where it is absent.
-  [[nodiscard]] double AsymmetryAt(std::span<const double> theta) const;
   /// Returns the spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 

@@ -98,7 +98,7 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
       .state = problem_->initial_state,
       .unloaded_displacement = problem_->is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
       .turns_at_first = record.begins_at_turn,
-      .asymmetry = IsMasing(*problem_) ? parameters.AsymmetryAt(theta) : 0.0};
+      .asymmetry = IsMasing(*problem_) ? theta[kAsymmetry] : 0.0};
   ContactMotion kind = ContactMotion::kMeasured;
   double amount = 0.0;
   if (moves_ < parameters.size()) {
@@ -195,7 +195,7 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
     begin += record.size();
     EvaluatePath(theta, r, values, parts);
     if (!IsMasing(*problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
-      ReadForceOfJoint(record, problem_->parameters.AsymmetryAt(theta), values, parts);
+      ReadForceOfJoint(record, theta[kAsymmetry], values, parts);
     }
     if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);
     if (record.load == 1) continue;
