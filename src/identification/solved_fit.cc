@@ -163,7 +163,7 @@ void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
       return;
     }
   }
-  TurnAtSamples(attempt.data);
+  for (ScaledRecord& record : attempt.data.records) record.turns_between = false;
 }
 
 }  // namespace

@@ -252,10 +252,6 @@ double TurnBetweenSamples(ScaledRecords& data) {
   return farthest;
 }
 
-void TurnAtSamples(ScaledRecords& data) {
-  for (ScaledRecord& record : data.records) record.turns_between = false;
-}
-
 double LongestLag(double samples_a_cycle) {
   constexpr double kSamples = 10.0;
   constexpr double kLongest = 0.2;

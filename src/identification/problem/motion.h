@@ -21,7 +21,6 @@ std::vector<models::Turn> TurnsOf(const ScaledRecord& record);
 /// Lets records turn between samples, but for those of an imposed force or of readings with noise.
 /// @returns how far beyond a sample any turns [half range]
 double TurnBetweenSamples(ScaledRecords& data);
-void TurnAtSamples(ScaledRecords& data);
 
 /// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
 /// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.
