@@ -89,8 +89,8 @@ void SetProgress(const ScaledRecord& record, std::span<const double> response,
   }
 }
 
-}  // namespace
-
+/// Returns the places of every sample at θ.
+/// @param held_readings  fraction of the readings that repeat the last one, of a held displacement
 std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
                             double held_readings) {
   const ScaledRecords& data = *problem.data;
@@ -143,8 +143,6 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   }
   return places;
 }
-
-namespace {
 
 double Square(double x) { return x * x; }
 double Cube(double x) { return x * x * x; }

@@ -32,11 +32,6 @@ struct Place {
   double progress = 0.0;   // fraction of that change, up to here
 };
 
-/// Returns those of every sample at θ.
-/// @param held_readings  fraction of the readings that repeat the last one, of a held displacement
-std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> theta,
-                            double held_readings);
-
 /// A column of an omitted term, of the response.
 using DepartureColumn = double (*)(const Place&);
 

@@ -9,6 +9,94 @@
 #include "identification/problem/scaled_records.h"
 
 namespace mindahl::identification {
+namespace {
+
+constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
+constexpr std::size_t kSamplesPerOrder = 10;
+/// Fraction of its largest output below which a filter's memory is rounding.
+constexpr double kForgotten = 1e-9;
+constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to forget
+
+using Autocovariances = std::array<double, kHighestOrder + 1>;
+
+/// Returns the number of samples that count.
+std::size_t CountedSamplesOf(const ScaledRecord& record) {
+  return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+}
+
+/// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
+/// that a series of this length has: without gaps that keeps the sequence positive definite.
+Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
+                                        std::span<const double> residual, std::size_t order) {
+  Autocovariances covariances{};
+  std::array<std::size_t, kHighestOrder + 1> pairs{};
+  std::array<std::size_t, kHighestOrder + 1> counting{};
+  std::span<const double> rest = residual;
+  for (const ScaledRecord& record : records) {
+    // Lags within, so that their sums do not wait for each other.
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      for (std::size_t lag = 0; lag <= std::min(order, i); ++lag) {
+        ++pairs[lag];
+        if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
+        covariances[lag] += rest[i] * rest[i - lag];
+        ++counting[lag];
+      }
+    }
+    rest = rest.subspan(record.size());
+  }
+  for (std::size_t lag = 0; lag <= order; ++lag) {
+    const double mean =
+        covariances[lag] / static_cast<double>(std::max<std::size_t>(counting[lag], 1));
+    covariances[lag] =
+        mean * static_cast<double>(pairs[lag]) / static_cast<double>(residual.size());
+  }
+  return covariances;
+}
+
+std::size_t HighestOrderOf(std::size_t count) {
+  return std::min(kHighestOrder, count / kSamplesPerOrder);
+}
+
+/// Solves by Levinson and Durbin: each order from the one before.
+/// @param count  samples that the covariances are of
+Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
+  Autocorrelation best;
+  if (!(covariance[0] > 0)) return best;
+  const auto samples = static_cast<double>(count);
+  std::array<double, kHighestOrder> coefficients{};
+  double variance = covariance[0];
+  double best_criterion = 0.0;  // of order 0, by how much others are better
+  for (std::size_t order = 1; order <= HighestOrderOf(count); ++order) {
+    double numerator = covariance[order];
+    for (std::size_t k = 1; k < order; ++k) {
+      numerator -= coefficients[k - 1] * covariance[order - k];
+    }
+    const double reflection = numerator / variance;
+    std::array<double, kHighestOrder> next{};
+    for (std::size_t k = 1; k < order; ++k) {
+      next[k - 1] = coefficients[k - 1] - reflection * coefficients[order - k - 1];
+    }
+    next[order - 1] = reflection;
+    coefficients = next;
+    variance *= 1 - reflection * reflection;
+    if (!(variance > 0)) break;
+    const double criterion = samples * std::log(variance / covariance[0]) +
+                             static_cast<double>(order) * std::log(samples);
+    if (criterion < best_criterion) {
+      best_criterion = criterion;
+      best.order = order;
+      best.coefficients = coefficients;
+      best.innovation_share = variance / covariance[0];
+    }
+  }
+  // Yule and Walker's process has the correlations that it was made from, to its order.
+  for (std::size_t lag = 0; lag <= best.order; ++lag) {
+    best.correlations[lag] = covariance[lag] / covariance[0];
+  }
+  return best;
+}
+
+}  // namespace
 
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
   const std::span<const double> excitation = record.excitation();
@@ -123,90 +211,6 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   return structure;
 }
 
-namespace {
-
-constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
-constexpr std::size_t kSamplesPerOrder = 10;
-/// Fraction of its largest output below which a filter's memory is rounding.
-constexpr double kForgotten = 1e-9;
-constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to forget
-
-using Autocovariances = std::array<double, kHighestOrder + 1>;
-
-/// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
-/// that a series of this length has: without gaps that keeps the sequence positive definite.
-Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
-                                        std::span<const double> residual, std::size_t order) {
-  Autocovariances covariances{};
-  std::array<std::size_t, kHighestOrder + 1> pairs{};
-  std::array<std::size_t, kHighestOrder + 1> counting{};
-  std::span<const double> rest = residual;
-  for (const ScaledRecord& record : records) {
-    // Lags within, so that their sums do not wait for each other.
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      for (std::size_t lag = 0; lag <= std::min(order, i); ++lag) {
-        ++pairs[lag];
-        if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
-        covariances[lag] += rest[i] * rest[i - lag];
-        ++counting[lag];
-      }
-    }
-    rest = rest.subspan(record.size());
-  }
-  for (std::size_t lag = 0; lag <= order; ++lag) {
-    const double mean =
-        covariances[lag] / static_cast<double>(std::max<std::size_t>(counting[lag], 1));
-    covariances[lag] =
-        mean * static_cast<double>(pairs[lag]) / static_cast<double>(residual.size());
-  }
-  return covariances;
-}
-
-std::size_t HighestOrderOf(std::size_t count) {
-  return std::min(kHighestOrder, count / kSamplesPerOrder);
-}
-
-/// Solves by Levinson and Durbin: each order from the one before.
-/// @param count  samples that the covariances are of
-Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
-  Autocorrelation best;
-  if (!(covariance[0] > 0)) return best;
-  const auto samples = static_cast<double>(count);
-  std::array<double, kHighestOrder> coefficients{};
-  double variance = covariance[0];
-  double best_criterion = 0.0;  // of order 0, by how much others are better
-  for (std::size_t order = 1; order <= HighestOrderOf(count); ++order) {
-    double numerator = covariance[order];
-    for (std::size_t k = 1; k < order; ++k) {
-      numerator -= coefficients[k - 1] * covariance[order - k];
-    }
-    const double reflection = numerator / variance;
-    std::array<double, kHighestOrder> next{};
-    for (std::size_t k = 1; k < order; ++k) {
-      next[k - 1] = coefficients[k - 1] - reflection * coefficients[order - k - 1];
-    }
-    next[order - 1] = reflection;
-    coefficients = next;
-    variance *= 1 - reflection * reflection;
-    if (!(variance > 0)) break;
-    const double criterion = samples * std::log(variance / covariance[0]) +
-                             static_cast<double>(order) * std::log(samples);
-    if (criterion < best_criterion) {
-      best_criterion = criterion;
-      best.order = order;
-      best.coefficients = coefficients;
-      best.innovation_share = variance / covariance[0];
-    }
-  }
-  // Yule and Walker's process has the correlations that it was made from, to its order.
-  for (std::size_t lag = 0; lag <= best.order; ++lag) {
-    best.correlations[lag] = covariance[lag] / covariance[0];
-  }
-  return best;
-}
-
-}  // namespace
-
 Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
                                         std::span<const double> residual) {
   std::size_t count = 0;
@@ -313,10 +317,6 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
   const auto k = static_cast<double>(parameters + 1);  // and the variance
   return effective_ * std::log(Floored(sum_of_squares) / samples_) + 2 * k +
          2 * k * (k + 1) / std::max(samples_ - k - 1, 1.0);
-}
-
-std::size_t CountedSamplesOf(const ScaledRecord& record) {
-  return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
 }
 
 std::vector<double> VariancesOfRecords(const ScaledRecords& data,

@@ -118,9 +118,6 @@ class Evidence {
   double effective_;
 };
 
-/// Returns the number of samples that count.
-std::size_t CountedSamplesOf(const ScaledRecord& record);
-
 /// Returns the mean squares of each record's residuals over that of all.
 /// @param residual  weighted, of every sample, not all zero
 std::vector<double> VariancesOfRecords(const ScaledRecords& data, std::span<const double> residual);
