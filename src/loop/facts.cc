@@ -289,13 +289,6 @@ bool Slides(const LoopFacts& facts) {
   return facts.closed && has_gap && (facts.energy_ratio >= kEnergyRatio || HasEvenGap(facts));
 }
 
-bool RanAway(const LoopFacts& facts, double slip_force) {
-  constexpr double kFarthest = 1.25;
-  if (!Slides(facts)) return false;
-  const double ratio = slip_force / std::abs(*facts.half_gap);
-  return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
-}
-
 bool HasSlipped(const LoopFacts& facts) {
   if (Slides(facts)) return true;
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;

@@ -67,10 +67,6 @@ bool HasEvenGap(const LoopFacts& facts);
 /// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
 bool Slides(const LoopFacts& facts);
 
-/// True if a slip force [N] ran away from a loop that slides: it is more than a quarter off the
-/// half gap that was measured.
-bool RanAway(const LoopFacts& facts, double slip_force);
-
 /// True if a measured loop slides over most of its stroke, or reaches its slip force at the ends,
 /// however much of it a rig takes up: its energy is 0.85 of 4·T*·sliding amplitude or more.
 /// Mindlin's contact has it from 1.2 times its gross-slip displacement on, one with α = 1 at T* =

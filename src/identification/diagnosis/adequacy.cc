@@ -44,7 +44,10 @@ double NoiseVariance(const FitResult& result) {
 }  // namespace
 
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
-  if (!loop::RanAway(facts, with)) return false;
+  constexpr double kFarthest = 1.25;
+  if (!loop::Slides(facts)) return false;
+  const double ratio = with / *facts.half_gap;
+  if (ratio <= kFarthest && ratio >= 1 / kFarthest) return false;
   const auto distance = [&](double slip_force) {
     return std::abs(slip_force / *facts.half_gap - 1);
   };

@@ -16,7 +16,8 @@
 /// measured without a model: never with a fitted slip force, which may be as wrong as the model.
 namespace mindahl::identification {
 
-/// True if Tc ran away from a loop that slides, and is no nearer to its half gap than before.
+/// True if Tc ran away from a loop that slides: it is more than a quarter off the half gap that was
+/// measured, and no nearer to it than before.
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
