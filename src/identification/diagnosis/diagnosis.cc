@@ -24,92 +24,6 @@ Finding OfRecord(std::size_t record, std::size_t records, Finding finding) {
   return finding;
 }
 
-}  // namespace
-
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const RecordFit& record = records[r];
-    const auto append = [&](Finding finding) {
-      findings.push_back(OfRecord(r, records.size(), std::move(finding)));
-    };
-    if (const loop::ReversalGate& gate = record.gate; !gate.certain) {
-      // Counted as the report does, after smoothing.
-      append({.code = "reversals_uncertain",
-              .numbers = {{"count", static_cast<double>(record.reversals.size())},
-                          {"gate", gate.gate}}});
-    }
-    if (!record.facts.closed) append({.code = "no_closed_cycle"});
-  }
-  return findings;
-}
-
-std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records) {
-  constexpr double kLong = 0.25;   // of a cycle: where it turned may not be seen
-  constexpr double kMeans = 10.0;  // of the times between rows
-  constexpr double kAway = 5.0;    // steps of the displacement: a pause goes on where it began
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::RecordView& record = records[r].record;
-    if (record.time.size() < 2) continue;
-    const Eigen::Index steps = std::ssize(record.time) - 1;
-    const Eigen::Map<const Eigen::ArrayXd> time(record.time.data(), steps + 1);
-    const Eigen::Map<const Eigen::ArrayXd> displacement(record.displacement.data(), steps + 1);
-    const Eigen::ArrayXd ways = (displacement.tail(steps) - displacement.head(steps)).abs();
-    Eigen::Index widest = 0;
-    const double gap = (time.tail(steps) - time.head(steps)).maxCoeff(&widest);
-    const double rest = time[steps] - time[0] - gap;
-    const auto others = static_cast<double>(steps - 1);
-    const double strokes = static_cast<double>(records[r].reversals.size()) + 1;
-    if (gap > kLong * 2 * rest / strokes && gap * others > kMeans * rest &&
-        ways[widest] * others > kAway * (ways.sum() - ways[widest])) {
-      findings.push_back(
-          OfRecord(r, records.size(),
-                   {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest]}}}));
-    }
-  }
-  return findings;
-}
-
-std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
-    const bool is_followed = !record.load_ratio.empty();
-    const std::vector<double>& load = is_followed ? record.load_ratio : record.load_change;
-    if (load.empty()) continue;
-    std::vector<double> counted;
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] != 0) counted.push_back(load[i]);
-    }
-    const Eigen::Map<const Eigen::ArrayXd> of(counted.data(), std::ssize(counted));
-    // The mean of a load of either sign differs from that of its magnitude.
-    const double variation = std::sqrt(2 * (of - of.mean()).square().mean());
-    findings.push_back(OfRecord(r, data.records.size(),
-                                {.code = "load_varies",
-                                 .severity = is_followed ? Severity::kNote : Severity::kWarning,
-                                 .numbers = {{"variation", variation}},
-                                 .kind = is_followed ? "followed" : "not_followed"}));
-  }
-  return findings;
-}
-
-std::optional<Finding> FindUndetermined(const Estimates& fitted) {
-  if (fitted.open_directions() == 0) return std::nullopt;
-  std::vector<std::string> names;
-  const Parameters& parameters = fitted.problem().parameters;
-  for (const std::size_t p : parameters.free()) {
-    if (std::isinf(fitted.ErrorOfTheta(p))) names.push_back(parameters.NameOf(p));
-  }
-  // With as many directions as names, each parameter is undetermined by itself.
-  const bool are_alone = fitted.open_directions() >= names.size();
-  return Finding{.code = "not_identifiable",
-                 .parameters = std::move(names),
-                 .kind = are_alone ? "without_effect" : "combination"};
-}
-
-namespace {
-
 /// True if a spring parallel to the contact is fitted to a loop that leaves Tc open above: far from
 /// slip a force σx − cx² has the same loop with less of σ and a spring for the rest.
 bool HidesInSpring(const FitResult& result) {
@@ -118,81 +32,6 @@ bool HidesInSpring(const FitResult& result) {
   return spring != nullptr && spring->status != ParameterStatus::kFixed &&
          slip_force.status != ParameterStatus::kFixed && !slip_force.upper95;
 }
-
-}  // namespace
-
-std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
-  std::vector<Finding> findings;
-  const ParameterEstimate& slip_force = *result.Find("slip_force");
-  if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
-    return findings;
-  }
-  findings.push_back({.code = "bounded_below",
-                      .parameters = {"slip_force"},
-                      .kind = loop::Slides(result.WidestRecord().facts) ? "slides" : ""});
-  if (result.Find("alpha")->status != ParameterStatus::kFixed) {
-    findings.push_back({.code = "not_identifiable",
-                        .parameters = {"alpha"},
-                        .kind = HidesInSpring(result) ? "with_spring" : "with_slip_force"});
-  }
-  return findings;
-}
-
-std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
-  std::vector<Finding> findings;
-  // What is known does not depend on the confidence that is asked for, nor does what a model
-  // misses.
-  const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
-                           StudentQuantile(result.degrees_of_freedom, result.confidence);
-  const bool hides = HidesInSpring(result);
-  for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
-    const ParameterEstimate& estimate = *result.Find(name);
-    if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
-      continue;
-    }
-    const double lower = *estimate.lower95;
-    const double upper = *estimate.upper95;
-    const double to_95 = estimate.includes_discrepancy ? 1.0 : quantiles;
-    // Beside a spring the value may be at the lower end: the ratio is then that of an interval as
-    // wide on its other side.
-    const double ratio = hides
-                             ? std::pow(std::max(upper / estimate.value, estimate.value / lower), 2)
-                             : upper / lower;
-    const bool wide =
-        name == "alpha"
-            ? to_95 * (upper - lower) > thresholds.widest_shape * std::max(1.0, estimate.value)
-            : !(lower > 0) || std::pow(ratio, to_95) > thresholds.widest_ratio;
-    const bool is_said = std::ranges::any_of(result.findings, [&](const Finding& finding) {
-      return finding.code.row().verdict == Identifiability::kNotIdentifiable &&
-             std::ranges::find(finding.parameters, name) != finding.parameters.end();
-    });
-    if (!wide || is_said) continue;
-    findings.push_back({.code = "not_identifiable",
-                        .parameters = {std::string(name)},
-                        .numbers = {{"lower", lower}, {"upper", upper}},
-                        .kind = hides ? "with_spring" : "wide"});
-    if (hides) findings.back().parameters.emplace_back("plateau_slope");
-  }
-  return findings;
-}
-
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
-  for (const std::size_t p : problem.parameters.free()) {
-    const Parameter& parameter = problem.parameters[p];
-    const bool is_limit_of_law = parameter.term->positive || p == kShape;
-    const BoundSide side = SideOf(parameter, solution.theta[p]);
-    if (is_limit_of_law || !IsSearchLimit(parameter, side)) continue;
-    Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
-    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
-      if (problem.parameters[law].fixed) continue;
-      finding.parameters.push_back(problem.parameters.NameOf(law));
-    }
-    return finding;
-  }
-  return std::nullopt;
-}
-
-namespace {
 
 /// True if a record of two strokes ends where it began, in both channels: one closed cycle.
 bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
@@ -371,6 +210,158 @@ std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
 }
 
 }  // namespace
+
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const RecordFit& record = records[r];
+    const auto append = [&](Finding finding) {
+      findings.push_back(OfRecord(r, records.size(), std::move(finding)));
+    };
+    if (const loop::ReversalGate& gate = record.gate; !gate.certain) {
+      // Counted as the report does, after smoothing.
+      append({.code = "reversals_uncertain",
+              .numbers = {{"count", static_cast<double>(record.reversals.size())},
+                          {"gate", gate.gate}}});
+    }
+    if (!record.facts.closed) append({.code = "no_closed_cycle"});
+  }
+  return findings;
+}
+
+std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records) {
+  constexpr double kLong = 0.25;   // of a cycle: where it turned may not be seen
+  constexpr double kMeans = 10.0;  // of the times between rows
+  constexpr double kAway = 5.0;    // steps of the displacement: a pause goes on where it began
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const loop::RecordView& record = records[r].record;
+    if (record.time.size() < 2) continue;
+    const Eigen::Index steps = std::ssize(record.time) - 1;
+    const Eigen::Map<const Eigen::ArrayXd> time(record.time.data(), steps + 1);
+    const Eigen::Map<const Eigen::ArrayXd> displacement(record.displacement.data(), steps + 1);
+    const Eigen::ArrayXd ways = (displacement.tail(steps) - displacement.head(steps)).abs();
+    Eigen::Index widest = 0;
+    const double gap = (time.tail(steps) - time.head(steps)).maxCoeff(&widest);
+    const double rest = time[steps] - time[0] - gap;
+    const auto others = static_cast<double>(steps - 1);
+    const double strokes = static_cast<double>(records[r].reversals.size()) + 1;
+    if (gap > kLong * 2 * rest / strokes && gap * others > kMeans * rest &&
+        ways[widest] * others > kAway * (ways.sum() - ways[widest])) {
+      findings.push_back(
+          OfRecord(r, records.size(),
+                   {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest]}}}));
+    }
+  }
+  return findings;
+}
+
+std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const bool is_followed = !record.load_ratio.empty();
+    const std::vector<double>& load = is_followed ? record.load_ratio : record.load_change;
+    if (load.empty()) continue;
+    std::vector<double> counted;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] != 0) counted.push_back(load[i]);
+    }
+    const Eigen::Map<const Eigen::ArrayXd> of(counted.data(), std::ssize(counted));
+    // The mean of a load of either sign differs from that of its magnitude.
+    const double variation = std::sqrt(2 * (of - of.mean()).square().mean());
+    findings.push_back(OfRecord(r, data.records.size(),
+                                {.code = "load_varies",
+                                 .severity = is_followed ? Severity::kNote : Severity::kWarning,
+                                 .numbers = {{"variation", variation}},
+                                 .kind = is_followed ? "followed" : "not_followed"}));
+  }
+  return findings;
+}
+
+std::optional<Finding> FindUndetermined(const Estimates& fitted) {
+  if (fitted.open_directions() == 0) return std::nullopt;
+  std::vector<std::string> names;
+  const Parameters& parameters = fitted.problem().parameters;
+  for (const std::size_t p : parameters.free()) {
+    if (std::isinf(fitted.ErrorOfTheta(p))) names.push_back(parameters.NameOf(p));
+  }
+  // With as many directions as names, each parameter is undetermined by itself.
+  const bool are_alone = fitted.open_directions() >= names.size();
+  return Finding{.code = "not_identifiable",
+                 .parameters = std::move(names),
+                 .kind = are_alone ? "without_effect" : "combination"};
+}
+
+std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
+  std::vector<Finding> findings;
+  const ParameterEstimate& slip_force = *result.Find("slip_force");
+  if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
+    return findings;
+  }
+  findings.push_back({.code = "bounded_below",
+                      .parameters = {"slip_force"},
+                      .kind = loop::Slides(result.WidestRecord().facts) ? "slides" : ""});
+  if (result.Find("alpha")->status != ParameterStatus::kFixed) {
+    findings.push_back({.code = "not_identifiable",
+                        .parameters = {"alpha"},
+                        .kind = HidesInSpring(result) ? "with_spring" : "with_slip_force"});
+  }
+  return findings;
+}
+
+std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
+  std::vector<Finding> findings;
+  // What is known does not depend on the confidence that is asked for, nor does what a model misses.
+  const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
+                           StudentQuantile(result.degrees_of_freedom, result.confidence);
+  const bool hides = HidesInSpring(result);
+  for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
+    const ParameterEstimate& estimate = *result.Find(name);
+    if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
+      continue;
+    }
+    const double lower = *estimate.lower95;
+    const double upper = *estimate.upper95;
+    const double to_95 = estimate.includes_discrepancy ? 1.0 : quantiles;
+    // Beside a spring the value may be at the lower end: the ratio is then that of an interval as
+    // wide on its other side.
+    const double ratio = hides
+                             ? std::pow(std::max(upper / estimate.value, estimate.value / lower), 2)
+                             : upper / lower;
+    const bool wide =
+        name == "alpha"
+            ? to_95 * (upper - lower) > thresholds.widest_shape * std::max(1.0, estimate.value)
+            : !(lower > 0) || std::pow(ratio, to_95) > thresholds.widest_ratio;
+    const bool is_said = std::ranges::any_of(result.findings, [&](const Finding& finding) {
+      return finding.code.row().verdict == Identifiability::kNotIdentifiable &&
+             std::ranges::find(finding.parameters, name) != finding.parameters.end();
+    });
+    if (!wide || is_said) continue;
+    findings.push_back({.code = "not_identifiable",
+                        .parameters = {std::string(name)},
+                        .numbers = {{"lower", lower}, {"upper", upper}},
+                        .kind = hides ? "with_spring" : "wide"});
+    if (hides) findings.back().parameters.emplace_back("plateau_slope");
+  }
+  return findings;
+}
+
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+  for (const std::size_t p : problem.parameters.free()) {
+    const Parameter& parameter = problem.parameters[p];
+    const bool is_limit_of_law = parameter.term->positive || p == kShape;
+    const BoundSide side = SideOf(parameter, solution.theta[p]);
+    if (is_limit_of_law || !IsSearchLimit(parameter, side)) continue;
+    Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
+    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
+      if (problem.parameters[law].fixed) continue;
+      finding.parameters.push_back(problem.parameters.NameOf(law));
+    }
+    return finding;
+  }
+  return std::nullopt;
+}
 
 std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
                                       const FitOptions& options, const FitResult& result) {

@@ -15,6 +15,8 @@ namespace mindahl::identification {
 
 namespace {
 
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
 ParameterStatus StatusOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return ParameterStatus::kFixed;
   const BoundSide side = SideOf(parameter, theta);
@@ -231,10 +233,6 @@ double Estimates::FStatistic(std::size_t parameter, double sum_of_squares) const
   if (!(variance > 0)) return rise / noise_.variance;
   return rise * white_factor_(*place, *place) / variance;
 }
-
-namespace {
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-}  // namespace
 
 Ends WithinBounds(const Parameter& parameter, Ends ends) {
   for (const auto& [side, theta] : {std::pair(BoundSide::kLower, parameter.lower),

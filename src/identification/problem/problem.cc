@@ -18,23 +18,6 @@ using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
 
 ConstArray ArrayOf(std::span<const double> values) { return {values.data(), std::ssize(values)}; }
 
-}  // namespace
-
-double LogScaleAt(const Problem& problem, std::span<const double> theta) {
-  const bool is_forced = problem.data->is_forced();
-  return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
-}
-
-ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) const {
-  ResponseColumns part;
-  std::ranges::transform(columns_, part.columns_.begin(), [&](std::span<double> column) {
-    return column.empty() ? column : column.subspan(begin, count);
-  });
-  return part;
-}
-
-namespace {
-
 /// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
 models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
                                const ScaledRecord& record) {
@@ -67,7 +50,114 @@ void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<do
   }
 }
 
+/// Returns the column of a linear parameter in a record, or its derivative by the parameter that
+/// shapes it (Term::shapes).
+Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const ScaledRecord& record,
+                        std::span<const double> theta, bool derivative) {
+  const Parameter& of = problem.parameters[parameter];
+  const TermId id = of.term->id;
+  const ConstArray position = ArrayOf(record.displacement);
+  switch (id) {
+    case TermId::kPlateauSlope:
+      return position;
+    case TermId::kPlateauCurvature:
+      return position.square();
+    case TermId::kForceDrift:
+    case TermId::kDisplacementDrift:
+      return ArrayOf(record.time);
+    case TermId::kInertia:
+      return ArrayOf(record.acceleration);
+    case TermId::kCovariate:
+      return ArrayOf(record.covariates[of.column]);
+    case TermId::kViscous: {
+      // A power of the speed in units of the data, so that C keeps the unit of a viscous force:
+      //   φ(v) = v·((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
+      // which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
+      if (problem.parameters[RowOf(TermId::kSpeedExponent)].absent) return ArrayOf(record.velocity);
+      const double exponent = theta[RowOf(TermId::kSpeedExponent)];
+      const Eigen::ArrayXd log_speed = ArrayOf(record.log_speed) + std::log(record.units.speed);
+      const Eigen::ArrayXd power = ArrayOf(record.velocity) * ((exponent - 1) * log_speed).exp();
+      return derivative ? Eigen::ArrayXd(power * log_speed) : power;
+    }
+    case TermId::kRippleCosineUp:
+    case TermId::kRippleSineUp:
+    case TermId::kRippleCosineDown:
+    case TermId::kRippleSineDown: {
+      // cos or sin of 2πδ/λ in the strokes of one direction, δ from the middle of the first record,
+      // and its derivative by ln λ.
+      const TermUnits& first = problem.data->records.front().units;
+      const double shift =
+          (record.units.displacement_reference - first.displacement_reference) / first.length;
+      const double rate = 2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)]);
+      const bool is_sine = id == TermId::kRippleSineUp || id == TermId::kRippleSineDown;
+      const bool is_up = id == TermId::kRippleCosineUp || id == TermId::kRippleSineUp;
+      const Eigen::ArrayXd wave = (rate * (position + shift)).unaryExpr([&](double phase) {
+        if (!derivative) return is_sine ? std::sin(phase) : std::cos(phase);
+        return phase * (is_sine ? -std::cos(phase) : std::sin(phase));
+      });
+      const std::vector<double> direction = DirectionsOf(record.displacement, record.reversals);
+      return ((is_up ? 1.0 : -1.0) * ArrayOf(direction) > 0).select(wave, 0.0);
+    }
+    default:
+      return Eigen::ArrayXd::Ones(position.size());  // an offset
+  }
+}
+
+bool IsInRecord(const Parameter& parameter, std::size_t record) {
+  return !parameter.absent && (!parameter.term->is_of_record || parameter.record == record);
+}
+
+/// The derivative of scale·t over the scale by a parameter, in multiples of t and of derivatives
+/// of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
+struct ChainRule {
+  double of_t = 0.0;
+  double by_rate = 0.0;  // that of TermId::kSigma
+  double by_rig = 0.0;
+  double by_itself = 0.0;
+};
+
+ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
+                      const ScaledRecord& record) {
+  switch (parameter.term->id) {
+    case TermId::kSigma:
+      if (problem.data->is_forced()) return {.of_t = -1};
+      return {.by_rate = 1};
+    case TermId::kSlipForce:
+      return {.of_t = 1, .by_rate = -1, .by_rig = problem.parameters.has_rig() ? 1.0 : 0.0};
+    case TermId::kRigStiffness:
+      return {.by_rig = -1};
+    case TermId::kLoadExponent:
+      return {.by_rate = record.log_load};
+    default:
+      return {.by_itself =
+                  parameter.term->is_linear || !parameter.term->shapes.empty() ? 0.0 : 1.0};
+  }
+}
+
+/// Adds what is linear in its parameters to the scaled t.
+void Complete(const Problem& problem, std::span<const double> theta, std::span<double> predicted) {
+  const double scale = std::exp(LogScaleAt(problem, theta));
+  for (double& value : predicted) value *= scale;
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    if (!problem.parameters[p].term->is_linear || theta[p] == 0) continue;
+    AddColumn(problem, p, theta, theta[p], predicted);
+  }
+}
+
 }  // namespace
+
+double LogScaleAt(const Problem& problem, std::span<const double> theta) {
+  const bool is_forced = problem.data->is_forced();
+  return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
+}
+
+ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) const {
+  ResponseColumns part;
+  std::ranges::transform(columns_, part.columns_.begin(), [&](std::span<double> column) {
+    return column.empty() ? column : column.subspan(begin, count);
+  });
+  return part;
+}
 
 void Response::Bind(const Problem& problem) {
   problem_ = &problem;
@@ -251,94 +341,6 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
   t = factor * t + drag * dragged;
 }
 
-namespace {
-
-/// Returns the column of a linear parameter in a record, or its derivative by the parameter that
-/// shapes it (Term::shapes).
-Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const ScaledRecord& record,
-                        std::span<const double> theta, bool derivative) {
-  const Parameter& of = problem.parameters[parameter];
-  const TermId id = of.term->id;
-  const ConstArray position = ArrayOf(record.displacement);
-  switch (id) {
-    case TermId::kPlateauSlope:
-      return position;
-    case TermId::kPlateauCurvature:
-      return position.square();
-    case TermId::kForceDrift:
-    case TermId::kDisplacementDrift:
-      return ArrayOf(record.time);
-    case TermId::kInertia:
-      return ArrayOf(record.acceleration);
-    case TermId::kCovariate:
-      return ArrayOf(record.covariates[of.column]);
-    case TermId::kViscous: {
-      // A power of the speed in units of the data, so that C keeps the unit of a viscous force:
-      //   φ(v) = v·((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
-      // which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
-      if (problem.parameters[RowOf(TermId::kSpeedExponent)].absent) return ArrayOf(record.velocity);
-      const double exponent = theta[RowOf(TermId::kSpeedExponent)];
-      const Eigen::ArrayXd log_speed = ArrayOf(record.log_speed) + std::log(record.units.speed);
-      const Eigen::ArrayXd power = ArrayOf(record.velocity) * ((exponent - 1) * log_speed).exp();
-      return derivative ? Eigen::ArrayXd(power * log_speed) : power;
-    }
-    case TermId::kRippleCosineUp:
-    case TermId::kRippleSineUp:
-    case TermId::kRippleCosineDown:
-    case TermId::kRippleSineDown: {
-      // cos or sin of 2πδ/λ in the strokes of one direction, δ from the middle of the first record,
-      // and its derivative by ln λ.
-      const TermUnits& first = problem.data->records.front().units;
-      const double shift =
-          (record.units.displacement_reference - first.displacement_reference) / first.length;
-      const double rate = 2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)]);
-      const bool is_sine = id == TermId::kRippleSineUp || id == TermId::kRippleSineDown;
-      const bool is_up = id == TermId::kRippleCosineUp || id == TermId::kRippleSineUp;
-      const Eigen::ArrayXd wave = (rate * (position + shift)).unaryExpr([&](double phase) {
-        if (!derivative) return is_sine ? std::sin(phase) : std::cos(phase);
-        return phase * (is_sine ? -std::cos(phase) : std::sin(phase));
-      });
-      const std::vector<double> direction = DirectionsOf(record.displacement, record.reversals);
-      return ((is_up ? 1.0 : -1.0) * ArrayOf(direction) > 0).select(wave, 0.0);
-    }
-    default:
-      return Eigen::ArrayXd::Ones(position.size());  // an offset
-  }
-}
-
-bool IsInRecord(const Parameter& parameter, std::size_t record) {
-  return !parameter.absent && (!parameter.term->is_of_record || parameter.record == record);
-}
-
-/// The derivative of scale·t over the scale by a parameter, in multiples of t and of derivatives
-/// of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
-struct ChainRule {
-  double of_t = 0.0;
-  double by_rate = 0.0;  // that of TermId::kSigma
-  double by_rig = 0.0;
-  double by_itself = 0.0;
-};
-
-ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
-                      const ScaledRecord& record) {
-  switch (parameter.term->id) {
-    case TermId::kSigma:
-      if (problem.data->is_forced()) return {.of_t = -1};
-      return {.by_rate = 1};
-    case TermId::kSlipForce:
-      return {.of_t = 1, .by_rate = -1, .by_rig = problem.parameters.has_rig() ? 1.0 : 0.0};
-    case TermId::kRigStiffness:
-      return {.by_rig = -1};
-    case TermId::kLoadExponent:
-      return {.by_rate = record.log_load};
-    default:
-      return {.by_itself =
-                  parameter.term->is_linear || !parameter.term->shapes.empty() ? 0.0 : 1.0};
-  }
-}
-
-}  // namespace
-
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
                double factor, std::span<double> to, bool derivative) {
   double* part = to.data();
@@ -361,20 +363,6 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
     AddColumn(problem, q, theta, theta[q], to, /*derivative=*/true);
   }
 }
-
-namespace {
-
-/// Adds what is linear in its parameters to the scaled t.
-void Complete(const Problem& problem, std::span<const double> theta, std::span<double> predicted) {
-  const double scale = std::exp(LogScaleAt(problem, theta));
-  for (double& value : predicted) value *= scale;
-  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    if (!problem.parameters[p].term->is_linear || theta[p] == 0) continue;
-    AddColumn(problem, p, theta, theta[p], predicted);
-  }
-}
-
-}  // namespace
 
 void Weight(const ScaledRecords& data, std::span<double> values) {
   std::size_t k = 0;

@@ -205,6 +205,66 @@ const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
   return is_enough && !has_covariate && !has_kinks ? thinned : *problem.data;
 }
 
+/// Searches from θ, and keeps the solution where it is better.
+void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
+                Solution& best) {
+  Solution solution;
+  solver.Solve(theta, options, solution);
+  if (solution.sum_of_squares < best.sum_of_squares) best = std::move(solution);
+}
+
+/// Returns points next to a solution from which there may be a way to a lower minimum.
+std::vector<std::vector<double>> Neighbours(const Problem& problem,
+                                            const std::vector<double>& solution) {
+  constexpr double kSharp = 0.1;       // α
+  constexpr double kSharpest = 0.003;  // α
+  constexpr double kAway = 0.1;
+  constexpr double kUnreached = 0.05;  // of ln Tc above the largest force
+  const Parameters& parameters = problem.parameters;
+  std::vector<std::vector<double>> neighbours;
+  // Other parts of the compliance in the rig: a sharp knee behind a soft rig resembles a round one.
+  const Parameter& rig = parameters[kRig];
+  const bool rig_is_open = !rig.fixed && !rig.has_prior();
+  const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
+  for (const double share : {0.2, 0.5, 0.8, 0.99}) {
+    for (const double shape : {0.02, 1.0}) {
+      if (!rig_is_open || (parameters[kShape].fixed && shape == 1.0)) continue;
+      std::vector<double>& theta = neighbours.emplace_back(solution);
+      theta[kStiffness] = -std::log((1 - share) * compliance);
+      theta[kRig] = -std::log(share * compliance);
+      theta[kShape] = shape;
+      // A law that bends from the start has a slip force far beyond the largest force, of about 1.
+      theta[kSlipForce] = std::min(theta[kSlipForce], 0.0);
+    }
+  }
+  // Virgin contacts unloaded at their first samples, where the search has led away from these: a
+  // thinned record of much noise may have.
+  std::vector<double> at_first = solution;
+  bool has_moved = false;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const std::size_t origin = parameters.PositionOfOrigin(r);
+    if (parameters[origin].fixed) continue;
+    at_first[origin] = problem.data->records[r].excitation().front();
+    has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
+  }
+  if (has_moved) neighbours.push_back(at_first);
+  // Slip that begins just before the ends, of a loop that does not slip.
+  const bool may_be_sharp =
+      !parameters[kShape].fixed && !parameters[kSlipForce].fixed && !problem.data->is_forced();
+  if (may_be_sharp && solution[kSlipForce] > kUnreached) {
+    std::vector<double>& sharp = neighbours.emplace_back(std::move(at_first));
+    sharp[kShape] = kSharpest;
+    sharp[kSlipForce] = 0.0;
+  }
+  // Slip that begins sooner or later, and a smoother law: where slip begins so sharply the sum of
+  // squares has a minimum between any two samples.
+  if (parameters[kShape].fixed || !(solution[kShape] < kSharp)) return neighbours;
+  const auto step = [&](std::size_t p, double by) { neighbours.emplace_back(solution)[p] += by; };
+  step(kShape, kSharp);
+  for (const double by : {-0.2, -0.1, -0.03, 0.03, 0.1, 0.2}) step(kStiffness, by);
+  return neighbours;
+}
+
 }  // namespace
 
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
@@ -306,70 +366,6 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
     candidate.starts.push_back(solution.theta);
   }
 }
-
-namespace {
-
-/// Searches from θ, and keeps the solution where it is better.
-void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
-                Solution& best) {
-  Solution solution;
-  solver.Solve(theta, options, solution);
-  if (solution.sum_of_squares < best.sum_of_squares) best = std::move(solution);
-}
-
-/// Returns points next to a solution from which there may be a way to a lower minimum.
-std::vector<std::vector<double>> Neighbours(const Problem& problem,
-                                            const std::vector<double>& solution) {
-  constexpr double kSharp = 0.1;       // α
-  constexpr double kSharpest = 0.003;  // α
-  constexpr double kAway = 0.1;
-  constexpr double kUnreached = 0.05;  // of ln Tc above the largest force
-  const Parameters& parameters = problem.parameters;
-  std::vector<std::vector<double>> neighbours;
-  // Other parts of the compliance in the rig: a sharp knee behind a soft rig resembles a round one.
-  const Parameter& rig = parameters[kRig];
-  const bool rig_is_open = !rig.fixed && !rig.has_prior();
-  const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
-  for (const double share : {0.2, 0.5, 0.8, 0.99}) {
-    for (const double shape : {0.02, 1.0}) {
-      if (!rig_is_open || (parameters[kShape].fixed && shape == 1.0)) continue;
-      std::vector<double>& theta = neighbours.emplace_back(solution);
-      theta[kStiffness] = -std::log((1 - share) * compliance);
-      theta[kRig] = -std::log(share * compliance);
-      theta[kShape] = shape;
-      // A law that bends from the start has a slip force far beyond the largest force, of about 1.
-      theta[kSlipForce] = std::min(theta[kSlipForce], 0.0);
-    }
-  }
-  // Virgin contacts unloaded at their first samples, where the search has led away from these: a
-  // thinned record of much noise may have.
-  std::vector<double> at_first = solution;
-  bool has_moved = false;
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const std::size_t origin = parameters.PositionOfOrigin(r);
-    if (parameters[origin].fixed) continue;
-    at_first[origin] = problem.data->records[r].excitation().front();
-    has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
-  }
-  if (has_moved) neighbours.push_back(at_first);
-  // Slip that begins just before the ends, of a loop that does not slip.
-  const bool may_be_sharp =
-      !parameters[kShape].fixed && !parameters[kSlipForce].fixed && !problem.data->is_forced();
-  if (may_be_sharp && solution[kSlipForce] > kUnreached) {
-    std::vector<double>& sharp = neighbours.emplace_back(std::move(at_first));
-    sharp[kShape] = kSharpest;
-    sharp[kSlipForce] = 0.0;
-  }
-  // Slip that begins sooner or later, and a smoother law: where slip begins so sharply the sum of
-  // squares has a minimum between any two samples.
-  if (parameters[kShape].fixed || !(solution[kShape] < kSharp)) return neighbours;
-  const auto step = [&](std::size_t p, double by) { neighbours.emplace_back(solution)[p] += by; };
-  step(kShape, kSharp);
-  for (const double by : {-0.2, -0.1, -0.03, 0.03, 0.1, 0.2}) step(kStiffness, by);
-  return neighbours;
-}
-
-}  // namespace
 
 void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
   Solution& best = candidate.solution;
