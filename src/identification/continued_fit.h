@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 
 namespace mindahl::identification {

@@ -18,7 +18,6 @@
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
-#include "identification/solve/search.h"
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"

@@ -8,7 +8,6 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
-#include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/draws.h"
 #include "mindahl/contact/cattaneo_mindlin.h"

@@ -2,10 +2,8 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "identification/inference/noise.h"
-#include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
 #include "mindahl/identification/fit_options.h"

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/models/friction_model.h"

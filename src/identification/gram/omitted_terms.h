@@ -4,7 +4,6 @@
 
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
-#include "identification/problem/problem.h"
 #include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
