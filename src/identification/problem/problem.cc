@@ -22,11 +22,11 @@ ConstArray ArrayOf(std::span<const double> values) { return {values.data(), std:
 models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
                                const ScaledRecord& record) {
   const double exponent = problem.parameters.LoadExponentAt(theta);
-  const double log_travel = theta[kSlipForce] - theta[kRig] + record.log_load;
-  return {
-      .rate = std::exp(theta[kStiffness] - theta[kSlipForce] + (exponent - 1) * record.log_load),
-      .shape_exponent = theta[kShape],
-      .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
+  const double log_load = std::log(record.load);
+  const double log_travel = theta[kSlipForce] - theta[kRig] + log_load;
+  return {.rate = std::exp(theta[kStiffness] - theta[kSlipForce] + (exponent - 1) * log_load),
+          .shape_exponent = theta[kShape],
+          .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
 }
 
 /// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
@@ -127,7 +127,7 @@ ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
     case TermId::kRigStiffness:
       return {.by_rig = -1};
     case TermId::kLoadExponent:
-      return {.by_rate = record.log_load};
+      return {.by_rate = std::log(record.load)};
     default:
       return {.by_itself =
                   parameter.term->is_linear || !parameter.term->shapes.empty() ? 0.0 : 1.0};

@@ -167,7 +167,6 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
   if (!data.is_load_series) return;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     data.records[r].load = data.mean_load[r] / data.reference_load;
-    data.records[r].log_load = std::log(data.records[r].load);
   }
 }
 

@@ -36,8 +36,7 @@ struct ScaledRecord {
   /// The record that this one has some samples of, of whose motion a lag is; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;
-  double load = 1.0;      // mean of N over that of all records; 1 where they are not a load series
-  double log_load = 0.0;  // its logarithm
+  double load = 1.0;  // mean of N over that of all records; 1 where they are not a load series
 
   /// Returns the number of turns before the last sample that counts: later ones make no history.
   [[nodiscard]] std::size_t CountTurns() const;
