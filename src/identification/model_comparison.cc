@@ -97,8 +97,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
                             return one.fit.likelihood_rms;
                           })->fit;
   const auto samples = static_cast<double>(best.residuals.samples);
-  const Evidence evidence(best.residuals.samples,
-                          std::min(best.residuals.effective_samples, samples));
+  const Evidence evidence(best.residuals.samples, best.residuals.effective_samples);
   const std::vector<SampleRange> cycles = CyclesOf(best);
   std::vector<ModelScore> scores;
   for (auto& [own, fit] : compared) {

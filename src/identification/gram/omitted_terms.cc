@@ -115,7 +115,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds)
   }
   AdequacyTest test;
   const auto own = static_cast<double>(axes.values.size());
-  const double effective_samples = samples / std::max(1.0, process.SquaredCorrelations());
+  const double effective_samples = samples / process.SquaredCorrelations();
   test.degrees_of_freedom = std::max(1.0, effective_samples - law - own);
   // A fit absorbs more of correlated noise than the number of its parameters.
   const double absorbed = std::min(gram.absorbed() + axes.noise.sum(), samples / 2);
