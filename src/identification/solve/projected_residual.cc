@@ -130,6 +130,12 @@ void ProjectedResidual::MoveTo(std::span<const double> u) {
 double ProjectedResidual::Regress(double scale) {
   response_values_.array() *= weight_.array();
   response_products_ = ProjectOut(response_values_);
+  return ScaleTo(scale);
+}
+
+/// Computes the residual from t, which is weighted and projected.
+/// @returns likewise
+double ProjectedResidual::ScaleTo(double scale) {
   scale_ = scale;
   residual_ = scale_ * response_values_ - measured_;
   const double cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta_);
@@ -152,12 +158,10 @@ double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
     if (!(best > 0)) return std::numeric_limits<double>::infinity();
     const double log_scale = is_forced() ? theta[kSlipForce] - std::log(best) : std::log(best);
     theta[of_scale] = std::clamp(log_scale, parameter.lower, parameter.upper);
-    scale_ = std::exp(LogScaleAt(*problem_, theta));
-    residual_ = scale_ * response_values_ - measured_;
-    cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta_);
+    cost = ScaleTo(std::exp(LogScaleAt(*problem_, theta)));
   }
   SolveLinear(theta);
-  return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
+  return cost;
 }
 
 double ProjectedResidual::Linearise(std::span<const double> u) {

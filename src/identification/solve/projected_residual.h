@@ -51,6 +51,7 @@ class ProjectedResidual {
   Eigen::VectorXd ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
   void SolveLinear(std::span<double> theta) const;
   double Regress(double scale);
+  double ScaleTo(double scale);
   [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
