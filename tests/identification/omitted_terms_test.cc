@@ -75,9 +75,9 @@ TEST(WidenByOmittedTerms, MovesEachEndByTheStepAndTwiceItsError) {
   /// The part of the interval [θ] that a step with an error adds to a parameter.
   const auto added = [&](std::size_t parameter, double step, double error) {
     AdequacyTest test;
-    test.step.assign(free.size(), 0.0);
-    test.error.assign(free.size(), 0.0);
-    const auto place = static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
+    test.step.setZero(std::ssize(free));
+    test.error.setZero(std::ssize(free));
+    const Eigen::Index place = std::ranges::find(free, parameter) - free.begin();
     test.step[place] = step;
     test.error[place] = error;
     std::vector<ParameterEstimate> estimates(reported.size());

@@ -107,7 +107,7 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
   for (std::size_t k = 0; k < reported.size(); ++k) {
     const std::size_t p = reported[k];
     const Parameter& parameter = problem.parameters[p];
-    const auto place = static_cast<std::size_t>(std::ranges::find(free, p) - free.begin());
+    const Eigen::Index place = std::ranges::find(free, p) - free.begin();
     const auto include = [&](double step, double half) {
       const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
       const auto [lower, upper] =

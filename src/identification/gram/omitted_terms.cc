@@ -59,10 +59,6 @@ RandomTerms EstimateTerms(const GramAxes& axes, const NoiseLevel& noise) {
           .gains = ratio / spread(ratio)};
 }
 
-std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
-  return {vector.begin(), vector.end()};
-}
-
 /// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
 void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
               const Evidence& evidence, double limit, OmittedTerm& fit) {
@@ -73,7 +69,7 @@ void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   const double explained = axes.coefficients.square().sum();
   fit.explains = std::clamp(explained / gram.sum_of_squares(), 0.0, 1.0);
-  fit.step = ValuesOf(step.law);
+  fit.step = step.law;
   fit.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
 }
 
@@ -128,8 +124,8 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds)
   const RandomTerms terms = EstimateTerms(axes, level);
   const GramStep step = gram.StepBy(axes, terms.gains);
   double explained = (terms.gains * axes.values * axes.coefficients).square().sum();
-  test.step = ValuesOf(step.law);
-  test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
+  test.step = step.law;
+  test.error = (terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt();
 
   const Evidence evidence(data.counted, effective_samples);
   double least = 1.0;

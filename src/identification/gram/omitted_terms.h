@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "identification/inference/departures.h"
@@ -16,8 +17,8 @@ struct AdequacyTest {
   double p_value = 1.0;             // that noise alone looks so
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
-  std::vector<double> step;         // E(δ), one a free parameter
-  std::vector<double> error;        // standard deviation of δ, γ integrated out
+  Eigen::VectorXd step;             // E(δ), one a free parameter
+  Eigen::VectorXd error;            // standard deviation of δ, γ integrated out
   std::vector<OmittedTerm> fits;    // of each term that the record can identify
 };
 

@@ -53,7 +53,7 @@ struct Departure {
 struct OmittedTerm : Cause {
   std::vector<Eigen::Index> places = {};  // of its columns
   double p_value = 1.0;                   // that noise alone makes it
-  std::vector<double> step = {};          // of θ, one a free parameter
+  Eigen::VectorXd step = {};              // of θ, one a free parameter
 };
 
 /// Holds the columns of all omitted terms at a solution.
