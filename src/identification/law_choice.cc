@@ -90,11 +90,9 @@ bool HasOneAmplitude(const ScaledRecords& data, double step, const Thresholds& t
   for (const ScaledRecord& record : data.records) {
     if (record.reversals.empty()) return false;
     const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
-    for (std::size_t s = 0; s < strokes.size(); ++s) {
-      const double swing =
-          std::abs(record.excitation()[strokes[s].end] - record.excitation()[strokes[s].begin]);
-      widest = std::max(widest, swing);
-      if (s > 0 && s + 1 < strokes.size()) narrowest = std::min(narrowest, swing);
+    widest = std::max(widest, std::ranges::max(strokes, {}, &Stroke::length).length);
+    for (const Stroke& stroke : std::span(strokes).subspan(1, strokes.size() - 2)) {
+      narrowest = std::min(narrowest, stroke.length);
     }
   }
   return widest <= (1 + thresholds.one_amplitude) * narrowest + 2 * step;

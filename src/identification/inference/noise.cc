@@ -99,15 +99,10 @@ Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) 
 }  // namespace
 
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
-  const std::span<const double> excitation = record.excitation();
-  std::vector<Stroke> strokes = StrokesOf(excitation, record.reversals);
-  const auto length = [&](const Stroke& stroke) {
-    return std::abs(excitation[stroke.end] - excitation[stroke.begin]);
-  };
-  double longest = 0.0;
-  for (const Stroke& stroke : strokes) longest = std::max(longest, length(stroke));
+  std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+  const double longest = std::ranges::max(strokes, {}, &Stroke::length).length;
   std::erase_if(strokes, [&](const Stroke& stroke) {
-    return !(length(stroke) > 0) || length(stroke) < thresholds.main_stroke * longest;
+    return !(stroke.length > 0) || stroke.length < thresholds.main_stroke * longest;
   });
   return strokes;
 }

@@ -269,7 +269,9 @@ std::vector<Stroke> StrokesOf(std::span<const double> excitation,
     Stroke& stroke = strokes[s];
     stroke.begin = s > 0 ? reversals[s - 1] : 0;
     stroke.end = s < reversals.size() ? reversals[s] : excitation.size() - 1;
-    stroke.direction = excitation[stroke.end] >= excitation[stroke.begin] ? 1.0 : -1.0;
+    const double travel = excitation[stroke.end] - excitation[stroke.begin];
+    stroke.direction = travel >= 0 ? 1.0 : -1.0;
+    stroke.length = std::abs(travel);
   }
   return strokes;
 }
@@ -350,7 +352,8 @@ ScaledRecords Thinned(const ScaledRecords& data) {
     std::vector<std::size_t> samples = {0};
     std::vector<std::size_t> turns;
     for (std::size_t s = 0; s < strokes.size(); ++s) {
-      const auto& [begin, end, direction] = strokes[s];
+      const std::size_t begin = strokes[s].begin;
+      const std::size_t end = strokes[s].end;
       // Under a load that varies the path between samples is part of the history.
       const bool is_dense =
           s / 2 * kDenseCycles % cycles < kDenseCycles || !record.load_ratio.empty();

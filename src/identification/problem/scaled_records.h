@@ -113,6 +113,7 @@ struct Stroke {
   std::size_t begin = 0;
   std::size_t end = 0;     // the sample where it ends
   double direction = 1.0;  // +1 where the excitation grows, else −1
+  double length = 0.0;     // of the change of the excitation, > 0 unless it rests
 };
 std::vector<Stroke> StrokesOf(std::span<const double> excitation,
                               std::span<const std::size_t> reversals);
