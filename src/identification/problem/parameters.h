@@ -48,6 +48,8 @@ struct Parameter {
   double prior_root_weight = 0.0;
 
   [[nodiscard]] bool has_prior() const { return prior_root_weight > 0; }
+  /// True if the data alone say what it is.
+  [[nodiscard]] bool is_open() const { return !fixed && !has_prior(); }
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
   [[nodiscard]] bool is_exponent() const { return term->name.ends_with("_exponent"); }

@@ -75,9 +75,8 @@ class Plane {
     const Parameters& parameters = problem_.parameters;
     const Parameter& shape = parameters[kShape];
     const Parameter& rig = parameters[kRig];
-    const bool rig_is_open = !rig.fixed && !rig.has_prior();
     const std::vector<double> ratios =
-        rig_is_open ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
+        rig.is_open() ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
     const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
     std::vector<Look> best(rows.size());
     const bool is_given = shape.fixed || shape.started_by_user;
@@ -135,11 +134,10 @@ class Plane {
     if (is_forced && !slip_force.fixed) {
       theta[kSlipForce] = std::log(FarthestFrom(theta) / look.reach);
     }
-    const bool rig_is_held = rig.fixed || rig.has_prior();
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k.
-      const double compliance =
-          rig_is_held ? std::exp(-rig.theta) : look.rig_ratio / (look.reach * (1 + look.rig_ratio));
+      const double compliance = rig.is_open() ? look.rig_ratio / (look.reach * (1 + look.rig_ratio))
+                                              : std::exp(-rig.theta);
       log_stiffness = -std::log(std::max(1 / look.reach - compliance, 0.1 / look.reach));
       log_rig = -std::log(compliance);
     }
@@ -153,7 +151,7 @@ class Plane {
       // Parameters that are held keep their values; the others follow from the ratios of the look.
       if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
       theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
-      theta[kRig] = rig_is_held ? rig.theta : log_rig + theta[kSlipForce];
+      theta[kRig] = rig.is_open() ? log_rig + theta[kSlipForce] : rig.theta;
     }
     for (const std::size_t p : parameters.free()) {
       const Parameter& parameter = parameters[p];
@@ -223,12 +221,10 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   const Parameters& parameters = problem.parameters;
   std::vector<std::vector<double>> neighbours;
   // Other parts of the compliance in the rig: a sharp knee behind a soft rig resembles a round one.
-  const Parameter& rig = parameters[kRig];
-  const bool rig_is_open = !rig.fixed && !rig.has_prior();
   const double compliance = std::exp(-solution[kStiffness]) + std::exp(-solution[kRig]);
   for (const double share : {0.2, 0.5, 0.8, 0.99}) {
     for (const double shape : {0.02, 1.0}) {
-      if (!rig_is_open || (parameters[kShape].fixed && shape == 1.0)) continue;
+      if (!parameters[kRig].is_open() || (parameters[kShape].fixed && shape == 1.0)) continue;
       std::vector<double>& theta = neighbours.emplace_back(solution);
       theta[kStiffness] = -std::log((1 - share) * compliance);
       theta[kRig] = -std::log(share * compliance);
