@@ -103,15 +103,12 @@ bool IsNearlyWhite(const FitResult& fit, const Thresholds& thresholds) {
   return fit.rms * fit.rms <= thresholds.nearly_white * WhiteVariance(fit);
 }
 
-/// True if the interval of the slip force was closed and is open.
+/// True if the interval of the slip force is closed.
 /// @param widest_ratio  of the ends of an interval that is closed
-bool OpensSlipForce(const FitResult& without, const FitResult& with, double widest_ratio) {
-  const auto is_closed = [&](const FitResult& fit) {
-    const ParameterEstimate& slip_force = *fit.Find("slip_force");
-    return slip_force.lower95 && slip_force.upper95 &&
-           *slip_force.upper95 <= widest_ratio * *slip_force.lower95;
-  };
-  return is_closed(without) && !is_closed(with);
+bool BoundsSlipForce(const FitResult& fit, double widest_ratio) {
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  return slip_force.lower95 && slip_force.upper95 &&
+         *slip_force.upper95 <= widest_ratio * *slip_force.lower95;
 }
 
 /// True if the search of a term stopped at a bound of the program's own: no parameter would be
@@ -172,6 +169,7 @@ class Selection {
       : records_(records),
         drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
         facts_(law.WidestRecord().facts),
+        law_bounds_slip_force_(BoundsSlipForce(law, options.thresholds.widest_ratio)),
         candidates_(CandidatesOf(records, options, law)),
         base_{.options = options, .fit = law} {
     // The law is fitted again as the candidates are, without an upper bound on the slip force: a
@@ -186,8 +184,8 @@ class Selection {
     }
     FitResult last;
     // Short of slip the law itself has the forms of several: together they would take its place.
-    if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon(law);
-    if (!IsFitted(last) && !added_.empty()) last = FitLast(law, base_);
+    if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon();
+    if (!IsFitted(last) && !added_.empty()) last = FitLast(base_);
     if (IsFitted(last)) {
       // One term that leaves but noise rules out what leaves much more.
       const bool is_settled =
@@ -409,21 +407,20 @@ class Selection {
   }
 
   /// Fits a model to the end, from its solution.
-  /// @param law  without terms, of Depth::kFull
   /// @returns a fit without parameters where Tc is lost
-  FitResult FitLast(const FitResult& law, const Model& model) {
+  FitResult FitLast(const Model& model) {
     FitOptions options = model.options;
     StartFrom(model.fit, options);
     FitResult last = FitTo(std::move(options), Depth::kFull);
-    const bool is_kept =
-        IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio);
+    const bool is_kept = IsFitted(last) && !Leaves(last) &&
+                         (!law_bounds_slip_force_ || BoundsSlipForce(last, Limits().widest_ratio));
     return is_kept ? last : FitResult();
   }
 
   /// Fits the law with all common terms, which begin without effect, and moves there unless there
   /// is an obstacle or the terms that were added one after the other leave hardly more.
   /// @returns a fit without parameters where it does not move
-  FitResult FitCommon(const FitResult& law) {
+  FitResult FitCommon() {
     std::vector<std::string> common;
     TermChoice all;
     for (const TermCandidate& candidate : candidates_) {
@@ -442,7 +439,7 @@ class Selection {
     const bool is_better = Gains(model.fit);
     const Model added = std::exchange(base_, law_);
     FitResult last;
-    if (is_better && ObstacleTo(model).empty()) last = FitLast(law, model);
+    if (is_better && ObstacleTo(model).empty()) last = FitLast(model);
     if (!IsFitted(last)) {
       base_ = added;
       return {};
@@ -456,6 +453,7 @@ class Selection {
   std::span<const RecordView> records_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
+  bool law_bounds_slip_force_;                        // without terms
   std::vector<TermCandidate> candidates_;
   Model law_;                       // without terms
   Model base_;                      // with the terms that were added
