@@ -83,16 +83,15 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
     AddColumn(problem, p, theta, -theta[p] * data.force * prepared.force_sense, known);
   }
   if (std::ranges::all_of(known, [](double force) { return force == 0; })) return;
-  auto of_record = known.begin();
-  for (loop::PreparedRecord& record : prepared.records) {
+  for (std::size_t r = 0; r < prepared.records.size(); ++r) {
+    loop::PreparedRecord& record = prepared.records[r];
     loop::RecordView contact = record.readings();
     contact.displacement = record.displacement();
-    const std::span<double> force(of_record, record.size());
+    const std::span<double> force = data.records[r].Of(std::span(known));
     std::ranges::transform(force, contact.force, force.begin(), std::plus());
     contact.force = force;
     record.facts =
         loop::MeasureFacts(contact, record.reversals, prepared.force_sense, record.counts);
-    of_record += std::ssize(force);
   }
 }
 
@@ -102,20 +101,20 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
   Eigen::VectorXd residuals = Predict(problem, solved.solution().theta);
-  TakeOffMeasured(data, {residuals.data(), problem.size()});
+  const std::span<double> of_all(residuals.data(), problem.size());
+  TakeOffMeasured(data, of_all);
   const bool is_forced = data.is_forced();
   const double unit = is_forced ? data.length : data.force * attempt.prepared.force_sense;
   double squares = 0.0;
-  Eigen::Index k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const RecordView& view = attempt.prepared.records[r].record;
     RecordFit& fit = result.records[r];
     std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
     if (is_forced) fit.fitted_force.assign(view.force.begin(), view.force.end());
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+    for (std::size_t i = 0; i < record.size(); ++i) {
       // The difference in units of the data: offsets of the file would cost its digits.
-      const double residual = unit * residuals[k];
+      const double residual = unit * record.Of(of_all)[i];
       fitted.push_back((is_forced ? view.displacement : view.force)[i] + residual);
       fit.residual.push_back(residual);
       if (record.counts[i] != 0) squares += residual * residual;

@@ -41,9 +41,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     ResidualStructure& structure = result.records[r].structure;
-    structure =
-        DescribeStructure(record, residual.first(record.size()), attempt.options.thresholds);
-    residual = residual.subspan(record.size());
+    structure = DescribeStructure(record, record.Of(residual), attempt.options.thresholds);
     widening = std::max(widening, structure.Widening());
   }
   if (!LeavesOnlyRounding(problem, solution)) noise.repeating = widening;

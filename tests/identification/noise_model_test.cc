@@ -19,8 +19,9 @@ Autocorrelation EstimateNoise(const std::vector<std::vector<double>>& records,
   std::vector<ScaledRecord> scaled(records.size());
   std::vector<double> residual;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    residual.insert(residual.end(), records[r].begin(), records[r].end());
+    scaled[r].first = residual.size();
     scaled[r].force = records[r];
+    residual.insert(residual.end(), records[r].begin(), records[r].end());
     scaled[r].counts.assign(records[r].size(), 1);
     if (!counts.empty()) scaled[r].counts = counts[r];
   }

@@ -145,11 +145,10 @@ std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresho
   double model = 0.0;
   double strokes = 0.0;
   double samples = 0.0;
-  std::size_t begin = 0;
+  const std::span<const double> residuals(estimates.residual().data(), estimates.problem().size());
   for (const ScaledRecord& record : data.records) {
     const auto force_of_model = [&](std::size_t i) {
-      return record.force[i] +
-             estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
+      return record.force[i] + record.Of(residuals)[i] / record.root_weight[i];
     };
     for (const Stroke& stroke : MainStrokes(record, thresholds)) {
       std::vector<std::size_t> counted;
@@ -175,7 +174,6 @@ std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresho
       model += (places * at.row(2).transpose()).sum();
       samples += static_cast<double>(at.cols());
     }
-    begin += record.size();
   }
   const double ratio = measured / model;  // of slopes at the same points
   const bool is_known = samples >= kFewestOfAStroke * strokes && ratio > 0 && std::isfinite(ratio);

@@ -114,11 +114,11 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   for (const double value : contact) peak = std::max(peak, std::abs(value));
   const bool is_held = IsDisplacementHeld(data, held_readings);
   std::vector<Place> places(problem.size());
-  std::size_t begin = 0;
   for (const ScaledRecord& record : data.records) {
-    const std::span<const double> whole = complete.subspan(begin, record.size());
-    const std::span<const double> own = std::span(contact).subspan(begin, record.size());
-    const std::span<Place> of = std::span(places).subspan(begin, record.size());
+    const std::span<const double> whole = record.Of(complete);
+    const std::span<const double> own = record.Of(std::span(contact));
+    const std::span<const double> asymmetry = record.Of(std::span(by_asymmetry));
+    const std::span<Place> of = record.Of(std::span(places));
     std::vector<double> time = record.time;
     for (double& value : time) value *= record.units.half_duration;
     const std::vector<double> velocity = Derive(record.displacement, time);
@@ -135,11 +135,10 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
                .force = is_forced ? record.force[i] : own[i],
                .peak = peak,
                .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
-               .asymmetry = by_asymmetry[begin + i]};
+               .asymmetry = asymmetry[i]};
     }
     SetProgress(record, own, of);
     if (is_held) SetMissedWay(of);
-    begin += record.size();
   }
   return places;
 }
@@ -255,18 +254,19 @@ void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<c
   for (const double way : motion) largest = std::max(largest, std::abs(way));
   if (largest == 0) return;
   const double step = kSmall / largest;
-  std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::vector<double>& measured = problem.data->records[r].displacement;
+    const std::span<double> ways = data.records[r].Of(motion);
     if (problem.is_virgin()) {
       double& unloaded = theta[problem.parameters.PositionOfOrigin(r)];
-      Place first = places[k];
+      Place first = data.records[r].Of(places).front();
       if (measured[0] != unloaded) first.direction = std::copysign(1.0, measured[0] - unloaded);
-      motion[k] = column(first);
+      ways.front() = column(first);
       unloaded += step * column({.displacement = unloaded, .direction = first.direction});
     }
-    std::ranges::transform(measured, data.records[r].displacement.begin(),
-                           [&](double displacement) { return displacement + step * motion[k++]; });
+    std::ranges::transform(
+        measured, ways, data.records[r].displacement.begin(),
+        [&](double displacement, double way) { return displacement + step * way; });
   }
   Problem moved = problem;
   moved.data = &data;

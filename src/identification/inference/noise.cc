@@ -31,18 +31,17 @@ Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
   Autocovariances covariances{};
   std::array<std::size_t, kHighestOrder + 1> pairs{};
   std::array<std::size_t, kHighestOrder + 1> counting{};
-  std::span<const double> rest = residual;
   for (const ScaledRecord& record : records) {
+    const std::span<const double> own = record.Of(residual);
     // Lags within, so that their sums do not wait for each other.
     for (std::size_t i = 0; i < record.size(); ++i) {
       for (std::size_t lag = 0; lag <= std::min(order, i); ++lag) {
         ++pairs[lag];
         if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
-        covariances[lag] += rest[i] * rest[i - lag];
+        covariances[lag] += own[i] * own[i - lag];
         ++counting[lag];
       }
     }
-    rest = rest.subspan(record.size());
   }
   for (std::size_t lag = 0; lag <= order; ++lag) {
     const double mean =
@@ -276,12 +275,10 @@ Eigen::MatrixXd Noise::Product(std::span<const ScaledRecord> records,
         moved * moved.transpose() / (static_cast<double>(drawn.cols()) * (variance * repeating));
     of_force = force_share.asDiagonal() * jacobian;
   }
-  Eigen::Index begin = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const auto rows = static_cast<Eigen::Index>(records[r].size());
+    const auto first = static_cast<Eigen::Index>(records[r].first);
     const double own = of_records.empty() ? 1.0 : of_records[r];
-    product += own * process.Quadratic(of_force.middleRows(begin, rows));
-    begin += rows;
+    product += own * process.Quadratic(of_force.middleRows(first, std::ssize(records[r].force)));
   }
   return product;
 }
@@ -319,9 +316,9 @@ std::vector<double> VariancesOfRecords(const ScaledRecords& data,
   std::vector<double> variances;
   double all = 0.0;
   for (const ScaledRecord& record : data.records) {
+    const std::span<const double> own = record.Of(residual);
     const double squares =
-        Eigen::Map<const Eigen::VectorXd>(residual.data(), std::ssize(record.force)).squaredNorm();
-    residual = residual.subspan(record.size());
+        Eigen::Map<const Eigen::VectorXd>(own.data(), std::ssize(own)).squaredNorm();
     all += squares;
     variances.push_back(squares / static_cast<double>(CountedSamplesOf(record)));
   }

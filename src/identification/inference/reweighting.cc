@@ -88,8 +88,10 @@ class Reweighting {
         force_(counts_.size()),
         from_displacement_(Eigen::ArrayXd::Zero(counts_.size())),
         degrees_(DegreesOfFreedom(data, problem.parameters.free().size())) {
-    auto to = counts_.begin();
-    for (const ScaledRecord& record : data.records) to = std::ranges::copy(record.counts, to).out;
+    const std::span<double> counts(counts_.data(), problem.size());
+    for (const ScaledRecord& record : data.records) {
+      std::ranges::copy(record.counts, record.Of(counts).begin());
+    }
     force_ = Predict(problem_, solution_.theta);
   }
 
@@ -226,10 +228,9 @@ class Reweighting {
 
   void SetWeights(Eigen::ArrayXd weights) {
     weights_ = std::move(weights);
-    auto from = weights_.begin();
+    const std::span<const double> of_all(weights_.data(), problem_.size());
     for (ScaledRecord& record : data_.records) {
-      from =
-          std::ranges::copy_n(from, std::ssize(record.root_weight), record.root_weight.begin()).in;
+      std::ranges::copy(record.Of(of_all), record.root_weight.begin());
     }
   }
 

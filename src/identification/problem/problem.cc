@@ -17,6 +17,7 @@ using Array = Eigen::Map<Eigen::ArrayXd>;
 using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
 
 ConstArray ArrayOf(std::span<const double> values) { return {values.data(), std::ssize(values)}; }
+Array ArrayOf(std::span<double> values) { return {values.data(), std::ssize(values)}; }
 
 /// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
 models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> theta,
@@ -151,10 +152,10 @@ double LogScaleAt(const Problem& problem, std::span<const double> theta) {
   return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
-ResponseColumns ResponseColumns::Part(std::size_t begin, std::size_t count) const {
+ResponseColumns ResponseColumns::Of(const ScaledRecord& record) const {
   ResponseColumns part;
   std::ranges::transform(columns_, part.columns_.begin(), [&](std::span<double> column) {
-    return column.empty() ? column : column.subspan(begin, count);
+    return column.empty() ? column : record.Of(column);
   });
   return part;
 }
@@ -277,12 +278,10 @@ void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion&
 void Response::Evaluate(std::span<const double> theta, std::span<double> t,
                         const ResponseColumns& columns) {
   AskWhetherToGoOn();
-  std::size_t begin = 0;
   for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
     const ScaledRecord& record = problem_->data->records[r];
-    const ResponseColumns parts = columns.Part(begin, record.size());
-    const std::span<double> values = t.subspan(begin, record.size());
-    begin += record.size();
+    const ResponseColumns parts = columns.Of(record);
+    const std::span<double> values = record.Of(t);
     EvaluatePath(theta, r, values, parts);
     if (!IsMasing(*problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
       ReadForceOfJoint(record, theta[kAsymmetry], values, parts);
@@ -315,12 +314,10 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
       (position * (value(TermId::kSlipSlope) + value(TermId::kSlipCurvature) * position) +
        value(TermId::kSlipTrend) * ArrayOf(record.time)) +
       value(TermId::kSlipSpeed) * change - value(TermId::kDragFraction);
-  Array t(response.data(), std::ssize(response));
-  for (const std::span<double> column : columns) {
-    Array(column.data(), std::ssize(column)) *= factor.head(std::ssize(column));
-  }
+  Array t = ArrayOf(response);
+  for (const std::span<double> column : columns) ArrayOf(column) *= factor.head(std::ssize(column));
   const auto set = [&](TermId id, const auto& derivative) {
-    if (!columns[id].empty()) Array(columns[id].data(), t.size()) = derivative;
+    if (!columns[id].empty()) ArrayOf(columns[id]) = derivative;
   };
   set(TermId::kSlipSlope, t * position);
   set(TermId::kSlipCurvature, t * position * position);
@@ -343,12 +340,10 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
 
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
                double factor, std::span<double> to, bool derivative) {
-  double* part = to.data();
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    Array rows(std::exchange(part, part + record.size()), std::ssize(record.force));
     if (!IsInRecord(problem.parameters[parameter], r)) continue;
-    rows += factor * ColumnOf(problem, parameter, record, theta, derivative);
+    ArrayOf(record.Of(to)) += factor * ColumnOf(problem, parameter, record, theta, derivative);
   }
 }
 
@@ -365,16 +360,14 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
 }
 
 void Weight(const ScaledRecords& data, std::span<double> values) {
-  std::size_t k = 0;
   for (const ScaledRecord& record : data.records) {
-    for (const double weight : record.root_weight) values[k++] *= weight;
+    ArrayOf(record.Of(values)) *= ArrayOf(record.root_weight);
   }
 }
 
 void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
-  std::size_t k = 0;
   for (const ScaledRecord& record : data.records) {
-    for (const double measured : record.response()) predicted[k++] -= measured;
+    ArrayOf(record.Of(predicted)) -= ArrayOf(record.response());
   }
 }
 
@@ -411,17 +404,14 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
   }
   response.Evaluate(theta, t, gradient);
   std::ranges::fill(columns, 0.0);
-  std::size_t begin = 0;
-  for (const std::size_t p : parameters) {
-    const Parameter& parameter = problem.parameters[p];
-    std::size_t end = 0;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Parameter& parameter = problem.parameters[parameters[k]];
+    const std::span<double> column = columns.subspan(k * samples, samples);
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
-      const std::size_t first = std::exchange(end, end + record.size());
       if (!IsInRecord(parameter, r)) continue;
-      Array column(columns.data() + begin + first, std::ssize(record.force));
       const auto add = [&](double factor, std::span<const double> derivative) {
-        if (factor != 0) column += factor * ArrayOf(derivative.subspan(first, record.size()));
+        if (factor != 0) ArrayOf(record.Of(column)) += factor * ArrayOf(record.Of(derivative));
       };
       const ChainRule rule = ChainRuleOf(problem, parameter, record);
       add(rule.of_t, t);
@@ -429,7 +419,6 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
       add(rule.by_rig, gradient[TermId::kRigStiffness]);
       add(rule.by_itself, gradient[parameter.term->id]);
     }
-    begin += samples;
   }
 }
 

@@ -45,8 +45,8 @@ class ResponseColumns {
   [[nodiscard]] std::span<double> operator[](TermId id) const { return columns_[RowOf(id)]; }
   [[nodiscard]] auto begin() const { return columns_.begin(); }
   [[nodiscard]] auto end() const { return columns_.end(); }
-  /// Returns those of some samples.
-  [[nodiscard]] ResponseColumns Part(std::size_t begin, std::size_t count) const;
+  /// Returns those of a record's samples.
+  [[nodiscard]] ResponseColumns Of(const ScaledRecord& record) const;
 
  private:
   std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> columns_;

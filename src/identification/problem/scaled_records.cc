@@ -225,7 +225,9 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::span<const double> force = prepared.force();
     const std::span<const double> time = prepared.record.time;
     const std::size_t size = prepared.size();
+    const std::size_t before = scaled.samples();
     ScaledRecord& target = scaled.records.emplace_back();
+    target.first = before;
     target.imposed = records.excitation;
     target.is_smoothed = prepared.displacement_noise > 0;
     target.reversals = prepared.reversals;
@@ -345,6 +347,7 @@ ScaledRecords Thinned(const ScaledRecords& data) {
   constexpr std::size_t kDenseCycles = 8;
   ScaledRecords thinned = data;
   thinned.counted = 0;
+  std::size_t first = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
@@ -373,6 +376,7 @@ ScaledRecords Thinned(const ScaledRecords& data) {
     ScaledRecord& thin = thinned.records[r] = record.At(samples);
     thin.reversals = std::move(turns);
     thin.whole = &record;
+    thin.first = std::exchange(first, first + thin.size());
     for (const unsigned char counts : thin.counts) thinned.counted += counts;
   }
   return thinned;

@@ -36,7 +36,8 @@ struct ScaledRecord {
   /// The record that this one has some samples of, of whose motion a lag is; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;
-  double load = 1.0;  // mean of N over that of all records; 1 where they are not a load series
+  std::size_t first = 0;  // its place among the samples of all records, one after the other
+  double load = 1.0;      // mean of N over that of all records; 1 where they are not a load series
 
   /// Returns the number of turns before the last sample that counts: later ones make no history.
   [[nodiscard]] std::size_t CountTurns() const;
@@ -52,6 +53,12 @@ struct ScaledRecord {
     return imposed == loop::Channel::kForce ? displacement : force;
   }
   [[nodiscard]] std::size_t size() const { return force.size(); }
+
+  /// Returns the record's part of values of all samples, one record after the other.
+  template <typename T>
+  [[nodiscard]] std::span<T> Of(std::span<T> all) const {
+    return all.subspan(first, size());
+  }
 };
 
 /// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller

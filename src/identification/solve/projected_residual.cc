@@ -52,11 +52,9 @@ void ProjectedResidual::FactoriseColumns() {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated));
   weight_.resize(size);
   measured_.resize(size);
-  std::size_t row = 0;
   for (const ScaledRecord& record : data.records) {
-    std::ranges::copy(record.root_weight, weight_.data() + row);
-    std::ranges::copy(record.response(), measured_.data() + row);
-    row += record.size();
+    std::ranges::copy(record.root_weight, record.Of(Writable(weight_)).begin());
+    std::ranges::copy(record.response(), record.Of(Writable(measured_)).begin());
   }
   for (std::size_t p = 0; p < theta_.size(); ++p) {
     if (!problem_->parameters[p].term->is_linear || theta_[p] == 0) continue;
