@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::identification {

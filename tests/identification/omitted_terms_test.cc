@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "identification/diagnosis/adequacy.h"
+#include "identification/diagnosis/hull.h"
 #include "identification/gram/gram.h"
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
