@@ -98,6 +98,13 @@ TEST(AddedForces, SlipForceOfPositionAndDirectionIsRecovered) {
               -10 * kRecovered * plateau_curvature);
 }
 
+TEST(AddedForces, DriftOfARecordWithoutTimeIsOfASample) {
+  Record record = Loop();
+  EXPECT_EQ(FitOne(record, {.terms = {"force_drift"}}).Find("force_drift")->unit, "N/s");
+  record.time.clear();
+  EXPECT_EQ(FitOne(record, {.terms = {"force_drift"}}).Find("force_drift")->unit, "N/sample");
+}
+
 TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
   Record record = Loop();
   constexpr double kOfSpeed = 0.4;

@@ -1,4 +1,6 @@
 #include "identification/sample_loop.h"
+#include "identification/solve/projected_residual.h"
+#include "identification/stages.h"
 #include "mindahl/identification/fit.h"
 #include "support/prelude.h"
 
@@ -117,6 +119,28 @@ TEST(Prior, ThatTheRecordContradictsIsAMisfit) {
     ASSERT_NE(finding, nullptr) << uncertainty;
     EXPECT_NEAR(finding->numbers.front().second, kOff / error, 0.5 * kOff / error);
   }
+}
+
+/// The look from which a search starts weighs the prior of the place that it looks at.
+TEST(Prior, CountsWhereASearchLooks) {
+  FitOptions options = Options();
+  testing::Stages stages(TimedLoop(), options);
+  options.priors = {{"alpha", {kLaw.shape_exponent, 1e-3}}};
+  stages.data.prior_noise = 1e-3;
+  const Problem with(stages.data, options, InitialState::kVirgin);
+  ProjectedResidual residual;
+  std::vector<double> theta;
+  for (std::size_t p = 0; p < with.parameters.size(); ++p) {
+    theta.push_back(with.parameters[p].theta);
+  }
+  theta[kShape] = 0.6;
+  std::vector<double> copy = theta;
+  residual.Bind(stages.problem);
+  const double without_prior = residual.EvaluateFreely(copy);
+  residual.Bind(with);
+  const double cost = residual.EvaluateFreely(theta);
+  EXPECT_GT(with.parameters.PriorCost(theta), 0.01);
+  EXPECT_NEAR(cost - without_prior, with.parameters.PriorCost(theta), 1e-9 * cost);
 }
 
 TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {

@@ -311,7 +311,8 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
-  // What is known does not depend on the confidence that is asked for, nor does what a model misses.
+  // What is known does not depend on the confidence that is asked for, nor does what a model
+  // misses.
   const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
                            StudentQuantile(result.degrees_of_freedom, result.confidence);
   const bool hides = HidesInSpring(result);

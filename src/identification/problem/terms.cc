@@ -241,7 +241,8 @@ constexpr std::array kTermRows = {
          .is_of_record = true,
          .presence = Presence::kReported,
          .powers = {.force = 1, .time = -1, .of_file = true},
-         .is_linear = true},
+         .is_linear = true,
+         .unit_by_sample = "N/sample"},
     Term{.name = "displacement_drift",
          .unit = "m/s",
          .meaning = "rate of a displacement linear in time, where the displacement is fitted; in m "

@@ -125,30 +125,30 @@ void ProjectedResidual::MoveTo(std::span<const double> u) {
 
 /// Computes the residual from t, which is there without weights.
 /// @returns the sum of squares; infinity where t is that of no displacement
-double ProjectedResidual::Regress(double scale) {
+double ProjectedResidual::Regress(std::span<const double> theta) {
   response_values_.array() *= weight_.array();
   response_products_ = ProjectOut(response_values_);
-  return ScaleTo(scale);
+  return ScaleTo(theta);
 }
 
 /// Computes the residual from t, which is weighted and projected.
 /// @returns likewise
-double ProjectedResidual::ScaleTo(double scale) {
-  scale_ = scale;
+double ProjectedResidual::ScaleTo(std::span<const double> theta) {
+  scale_ = std::exp(LogScaleAt(*problem_, theta));
   residual_ = scale_ * response_values_ - measured_;
-  const double cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta_);
+  const double cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta);
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
 double ProjectedResidual::Evaluate(std::span<const double> u) {
   MoveTo(u);
   response_.Evaluate(theta_, Writable(response_values_));
-  return Regress(std::exp(LogScaleAt(*problem_, theta_)));
+  return Regress(theta_);
 }
 
 double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
   response_.Evaluate(theta, Writable(response_values_));
-  double cost = Regress(std::exp(LogScaleAt(*problem_, theta)));
+  double cost = Regress(theta);
   const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
   const Parameter& parameter = problem_->parameters[of_scale];
   if (!parameter.fixed) {
@@ -156,7 +156,7 @@ double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
     if (!(best > 0)) return std::numeric_limits<double>::infinity();
     const double log_scale = is_forced() ? theta[kSlipForce] - std::log(best) : std::log(best);
     theta[of_scale] = std::clamp(log_scale, parameter.lower, parameter.upper);
-    cost = ScaleTo(std::exp(LogScaleAt(*problem_, theta)));
+    cost = ScaleTo(theta);
   }
   SolveLinear(theta);
   return cost;
@@ -168,7 +168,7 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   derivatives_.resize(response_values_.size(), count);
   DifferentiateResponse(*problem_, theta_, response_, searched_, Writable(response_values_),
                         {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
-  const double cost = Regress(std::exp(LogScaleAt(*problem_, theta_)));
+  const double cost = Regress(theta_);
   derivatives_ *= scale_;
   const std::vector<double> theta = Theta();
   double* column = derivatives_.data();

@@ -50,8 +50,8 @@ class ProjectedResidual {
   void FactoriseColumns();
   Eigen::VectorXd ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
   void SolveLinear(std::span<double> theta) const;
-  double Regress(double scale);
-  double ScaleTo(double scale);
+  double Regress(std::span<const double> theta);
+  double ScaleTo(std::span<const double> theta);
   [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
