@@ -107,8 +107,7 @@ void Search(benchmark::State& state) {
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   const identification::ScaledRecords data = identification::Scale(prepared, options);
   const identification::Problem problem(data, options, models::InitialState::kSteady);
-  identification::Solver solver;
-  solver.Bind(problem);
+  identification::Solver solver(problem);
   std::vector<std::vector<double>> starts;
   for (const campaign::Cycle& cycle : Cycles()) {
     const models::BranchLaw law = fitter.Continue(cycle.record, Depth::kEstimate).law;
@@ -122,11 +121,10 @@ void Search(benchmark::State& state) {
     start[identification::kSlipForce] =
         problem.parameters[identification::kSlipForce].ToTheta(law.slip_force);
   }
-  identification::Solution solution;
   for (auto _ : state) {
     for (const std::vector<double>& start : starts) {
-      solver.Solve(start, identification::SolverOptionsOf(options), solution);
-      benchmark::DoNotOptimize(solution.sum_of_squares);
+      benchmark::DoNotOptimize(
+          solver.Solve(start, identification::SolverOptionsOf(options)).sum_of_squares);
     }
   }
   CountCycles(state, starts.size());

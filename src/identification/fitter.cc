@@ -282,7 +282,6 @@ struct Fitter::State {
   [[nodiscard]] bool MayContinue() const;
 
   FitOptions options;
-  Solver solver;
   FitResult result;
 };
 
@@ -300,7 +299,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   MeasureBesideKnownForces(given, data, prepared);
   RequireRigStifferThanLoop(given, prepared);
 
-  const Attempt attempt{given, depth, prepared, drawn.get(), data, solver};
+  const Attempt attempt{given, depth, prepared, drawn.get(), data};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

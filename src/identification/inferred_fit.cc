@@ -94,16 +94,15 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const Solution& solution = solved.solution();
   Noise& noise = solved.noise;
   const Thresholds& thresholds = options.thresholds;
-  Solver& solver = attempt.solver;
   const bool is_judged = result.depth >= Depth::kIntervals;
   const bool is_tested = result.depth >= Depth::kFull;
   Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const Estimates fitted(problem, solution, noise, options, std::move(at));
   FillErrors(problem, fitted, result);
-  result.parameters = WithProfiles(fitted, result, options, solver);
+  result.parameters = WithProfiles(fitted, result, options);
   if (is_tested) {
-    Append(result.findings, IncludeCompliantRig(fitted, options, solver, result.parameters));
+    Append(result.findings, IncludeCompliantRig(fitted, options, result.parameters));
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, result.parameters);
   if (!problem.data->is_forced()) CoverSteps(attempt.prepared, result);

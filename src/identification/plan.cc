@@ -78,12 +78,11 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   const Problem& problem = candidate.problem;
   Solution& solution = candidate.solution;
   const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
-  Solver solver;
   std::vector<double> theta;
   for (const Parameter& parameter : problem.parameters) theta.push_back(parameter.theta);
   solution.theta = theta;
   Noise noise;
-  FitWithWeights(problem, data, options, drawn.get(), solver, solution, noise);
+  FitWithWeights(problem, data, options, drawn.get(), solution, noise);
   solution.theta = theta;
   const Estimates estimates(problem, solution, noise, options,
                             LinearizeAt(problem, theta, problem.parameters.free()));

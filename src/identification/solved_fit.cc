@@ -87,9 +87,9 @@ SolvedFit FitBestState(const Attempt& attempt) {
   if (options.start.empty()) thinned = Thinned(attempt.data);
   const ScaledRecords& thin = thinned ? *thinned : attempt.data;
   const auto descend = [&](Candidate& candidate) {
-    AddStartsOfSmallerModels(candidate, thin, options, attempt.solver);
-    Descend(candidate, options, attempt.solver);
-    SearchBesideMinimum(candidate, options, attempt.solver);
+    AddStartsOfSmallerModels(candidate, thin, options);
+    Descend(candidate, options);
+    SearchBesideMinimum(candidate, options);
   };
   std::vector<Candidate> candidates;
   for (const InitialState state : StatesToTry(attempt)) {
@@ -97,12 +97,12 @@ SolvedFit FitBestState(const Attempt& attempt) {
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }
   if (GiveEnergy(options, attempt.prepared)) {
-    Descend(candidates.front(), options, attempt.solver);  // without a start
+    Descend(candidates.front(), options);  // without a start
     return {.best = std::move(candidates.front())};
   }
   std::vector<double> costs;  // at the best starts
   for (Candidate& candidate : candidates) {
-    costs.push_back(FindStartsOf(candidate, thin, options, attempt.solver));
+    costs.push_back(FindStartsOf(candidate, thin, options));
   }
   Candidate& virgin = candidates.front();
   Candidate& steady = candidates.back();
@@ -152,9 +152,8 @@ void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
   const double error =
       std::sqrt(solution.sum_of_squares) / static_cast<double>(attempt.data.counted);
   if (shift > kMatters * error) {
-    Solution between;
-    attempt.solver.Bind(candidate.problem);
-    attempt.solver.Solve(solution.theta, SolverOptionsOf(attempt.options), between);
+    Solution between =
+        Solver(candidate.problem).Solve(solution.theta, SolverOptionsOf(attempt.options));
     const double ratio = between.sum_of_squares / solution.sum_of_squares;
     const double rate = std::exp(between.theta[kStiffness] - between.theta[kSlipForce]);
     if (farthest * rate < 1 &&
@@ -177,7 +176,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   TryTurnsBetweenSamples(attempt, best);
   const auto fit_with_weights = [&] {
     solved.is_settled = FitWithWeights(best.problem, attempt.data, options, attempt.drawn,
-                                       attempt.solver, best.solution, solved.noise);
+                                       best.solution, solved.noise);
   };
   fit_with_weights();
   if (options.loss == Loss::kNone) return solved;

@@ -14,14 +14,13 @@
 
 namespace mindahl::identification {
 
-/// Holds the inputs and buffers of a fit while it is made.
+/// Holds the inputs of a fit while it is made.
 struct Attempt {
   const FitOptions& options;
   Depth depth;
   const loop::PreparedRecords& prepared;
   const loop::DrawnReadings* drawn;  // of these; null where exact
   ScaledRecords& data;
-  Solver& solver;
 };
 
 /// Holds the least squares of some records: what every later stage starts from.

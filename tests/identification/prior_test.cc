@@ -128,17 +128,14 @@ TEST(Prior, CountsWhereASearchLooks) {
   options.priors = {{"alpha", {kLaw.shape_exponent, 1e-3}}};
   stages.data.prior_noise = 1e-3;
   const Problem with(stages.data, options, InitialState::kVirgin);
-  ProjectedResidual residual;
   std::vector<double> theta;
   for (std::size_t p = 0; p < with.parameters.size(); ++p) {
     theta.push_back(with.parameters[p].theta);
   }
   theta[kShape] = 0.6;
   std::vector<double> copy = theta;
-  residual.Bind(stages.problem);
-  const double without_prior = residual.EvaluateFreely(copy);
-  residual.Bind(with);
-  const double cost = residual.EvaluateFreely(theta);
+  const double without_prior = ProjectedResidual(stages.problem).EvaluateFreely(copy);
+  const double cost = ProjectedResidual(with).EvaluateFreely(theta);
   EXPECT_GT(with.parameters.PriorCost(theta), 0.01);
   EXPECT_NEAR(cost - without_prior, with.parameters.PriorCost(theta), 1e-9 * cost);
 }

@@ -49,8 +49,8 @@ class Stages {
   identification::Solution Solve() {
     const identification::ScaledRecords thin = identification::Thinned(data);
     identification::Candidate candidate(data, options, problem.initial_state);
-    identification::FindStartsOf(candidate, thin, options, solver);
-    identification::Descend(candidate, options, solver);
+    identification::FindStartsOf(candidate, thin, options);
+    identification::Descend(candidate, options);
     return candidate.solution;
   }
 
@@ -100,7 +100,6 @@ class Stages {
   loop::PreparedRecords prepared;
   identification::ScaledRecords data;
   identification::Problem problem;
-  identification::Solver solver;
 };
 
 struct WeightedFit {
@@ -114,8 +113,7 @@ inline WeightedFit FitWeighted(Stages& stages) {
   result.solution = stages.Solve();
   const auto drawn = loop::DrawReadings(stages.prepared);
   EXPECT_TRUE(identification::FitWithWeights(stages.problem, stages.data, stages.options,
-                                             drawn.get(), stages.solver, result.solution,
-                                             result.noise));
+                                             drawn.get(), result.solution, result.noise));
   return result;
 }
 

@@ -32,7 +32,7 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters) {
 }
 
 std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
-                                           Solver& solver, ParameterEstimates& parameters) {
+                                           ParameterEstimates& parameters) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
@@ -57,7 +57,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   beside[kStiffness] -= std::log(kStiffer);
   beside[kShape] = kMindlinShapeExponent;
   sprung.starts.push_back(std::move(beside));
-  Descend(sprung, with_rig, solver);
+  Descend(sprung, with_rig);
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);

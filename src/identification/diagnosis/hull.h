@@ -31,7 +31,7 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 /// @param parameters  intervals so far
 /// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
 std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
-                                           Solver& solver, ParameterEstimates& parameters);
+                                           ParameterEstimates& parameters);
 
 /// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
 /// Branches whose α differ by 0.05 are no more than 1 % of Tc apart.

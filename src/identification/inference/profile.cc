@@ -44,21 +44,11 @@ bool IsFree(const Estimates& fitted, std::size_t parameter) {
   return !fitted.problem().parameters[parameter].fixed;
 }
 
-/// The likelihood with one parameter held, the others fitted again. The solver is its own.
+/// The likelihood with one parameter held, the others fitted again.
 class HeldParameter {
  public:
-  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
-                Solver& solver)
-      : fitted_(fitted),
-        problem_(fitted.problem()),
-        parameter_(parameter),
-        options_(options),
-        solver_(solver) {
-    problem_.parameters.Fix(parameter, fitted.solution().theta[parameter]);
-    solver_.Bind(problem_);
-  }
-  HeldParameter(const HeldParameter&) = delete;
-  HeldParameter& operator=(const HeldParameter&) = delete;
+  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options)
+      : fitted_(fitted), problem_(fitted.problem()), parameter_(parameter), options_(options) {}
 
   /// True if a slip force far above the largest force, which is about 1, is not excluded.
   bool IsOpenAbove(const Thresholds& thresholds) {
@@ -113,8 +103,8 @@ class HeldParameter {
   /// @returns F of the best fit against that with the parameter at θ, which is the solution
   double At(double theta, std::vector<double> start) {
     start[parameter_] = theta;
-    solver_.HoldAt(parameter_, theta);
-    solver_.Solve(start, options_, solution_);
+    problem_.parameters.Fix(parameter_, theta);
+    solution_ = Solver(problem_).Solve(start, options_);
     const double statistic = fitted_.FStatistic(parameter_, solution_.sum_of_squares);
     if (statistic <= fitted_.critical()) region_.push_back(solution_.theta);
     return statistic;
@@ -124,20 +114,18 @@ class HeldParameter {
   Problem problem_;
   std::size_t parameter_;
   SolverOptions options_;
-  Solver& solver_;
   std::vector<std::vector<double>> region_;
   Solution solution_;
 };
 
 /// True if a loop that hardly dissipates leaves open that it is far from slip.
-bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const FitOptions& options,
-                      Solver& solver) {
+bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const FitOptions& options) {
   constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
   if (fitted.problem().parameters[kSlipForce].fixed ||
       result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
-  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options), solver)
+  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options))
       .IsOpenAbove(options.thresholds);
 }
 
@@ -156,7 +144,7 @@ bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
 /// hardly slips, of a law at a bound, and where Tc or the rig is too badly known for a parabola; σ
 /// and α where few samples slip in part.
 std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
-                                    const FitOptions& options, Solver& solver) {
+                                    const FitOptions& options) {
   const auto is_at_bound = [&](std::size_t p) {
     const Parameter& parameter = fitted.problem().parameters[p];
     return SideOf(parameter, fitted.solution().theta[p]) != BoundSide::kInside;
@@ -172,7 +160,7 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
       IsFree(fitted, kSlipForce) &&
       (!slips || result.law.shape_exponent <= options.thresholds.jenkins_shape ||
        std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
-       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options, solver));
+       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options));
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig, kSpring};
   if (RestsOnFewSamples(fitted, result)) return {kStiffness, kShape};
   if (is_badly_known(kStiffness)) return {kStiffness};
@@ -181,13 +169,12 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
 
 }  // namespace
 
-Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-                 Solver& solver) {
+Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = fitted.problem().parameters.free().size() > kMany;
-  HeldParameter held(fitted, parameter, search, solver);
+  HeldParameter held(fitted, parameter, search);
   const std::optional<double> lower = held.End(-1.0);
   const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
   const std::optional<double> upper = is_open ? std::nullopt : held.End(1.0);
@@ -195,18 +182,18 @@ Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOption
 }
 
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
-                                const FitOptions& options, Solver& solver) {
+                                const FitOptions& options) {
   ParameterEstimates parameters = result.parameters;
   const Parameters& of_problem = fitted.problem().parameters;
   const auto estimate_of = [&](std::size_t p) -> ParameterEstimate& {
     const auto& reported = of_problem.reported();
     return parameters[static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin())];
   };
-  std::vector<std::size_t> profiled = ProfiledOf(fitted, result, options, solver);
+  std::vector<std::size_t> profiled = ProfiledOf(fitted, result, options);
   std::erase_if(profiled, [&](std::size_t p) { return !IsFree(fitted, p); });
   std::vector<std::vector<double>> region;
   for (const std::size_t p : profiled) {
-    const Profiled profile = Profile(fitted, p, options, solver);
+    const Profiled profile = Profile(fitted, p, options);
     SetInterval(estimate_of(p), profile.ends);
     region.insert(region.end(), profile.region.begin(), profile.region.end());
   }

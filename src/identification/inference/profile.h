@@ -24,8 +24,7 @@ struct Profiled {
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
 /// the largest force that is not clearly rejected.
-Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
-                 Solver& solver);
+Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options);
 
 /// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig or
 /// parallel spring of which the parabola may be wrong: of a loop that hardly slips, or does not
@@ -33,6 +32,6 @@ Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOption
 /// is not rejected on the way to an end of any. The standard error follows. Where Tc is open above,
 /// so is α.
 ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
-                                const FitOptions& options, Solver& solver);
+                                const FitOptions& options);
 
 }  // namespace mindahl::identification

@@ -77,12 +77,11 @@ double Rms(const Eigen::ArrayXd& values) { return std::sqrt(values.square().mean
 class Reweighting {
  public:
   Reweighting(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-              const loop::DrawnReadings* drawn, Solver& solver, Solution& solution)
+              const loop::DrawnReadings* drawn, Solution& solution)
       : problem_(problem),
         data_(data),
         options_(options),
         drawn_(drawn),
-        solver_(solver),
         solution_(solution),
         counts_(static_cast<Eigen::Index>(problem.size())),
         force_(counts_.size()),
@@ -106,9 +105,7 @@ class Reweighting {
       if (loss != Loss::kNone) {
         SolveByCeres(problem_, loss, unit_, SolverOptionsOf(options_), solution_);
       } else {
-        const std::vector<double> start = solution_.theta;
-        solver_.Bind(problem_);
-        solver_.Solve(start, SolverOptionsOf(options_), solution_);
+        solution_ = Solver(problem_).Solve(solution_.theta, SolverOptionsOf(options_));
       }
       const Eigen::ArrayXd last_force = force_;
       force_ = Predict(problem_, solution_.theta);
@@ -238,7 +235,6 @@ class Reweighting {
   ScaledRecords& data_;
   const FitOptions& options_;
   const loop::DrawnReadings* drawn_;
-  Solver& solver_;
   Solution& solution_;
   Eigen::ArrayXd counts_;             // 1 of a sample that counts, else 0
   Eigen::ArrayXd force_;              // of the solution
@@ -255,13 +251,12 @@ class Reweighting {
 }  // namespace
 
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const loop::DrawnReadings* drawn, Solver& solver, Solution& solution,
-                    Noise& noise) {
+                    const loop::DrawnReadings* drawn, Solution& solution, Noise& noise) {
   if (options.loss == Loss::kNone && drawn == nullptr) {
     noise = PlainNoise(data, options, solution.sum_of_squares, problem.parameters.free().size());
     return true;
   }
-  Reweighting fits(problem, data, options, drawn, solver, solution);
+  Reweighting fits(problem, data, options, drawn, solution);
   // Other losses have several minima: they start from Huber's, which has one.
   if (options.loss == Loss::kCauchy || options.loss == Loss::kTukey) fits.Settle(Loss::kHuber);
   bool is_settled = fits.Settle(options.loss);

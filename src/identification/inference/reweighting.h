@@ -32,7 +32,6 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
 /// @param noise     what the weights stand for
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const loop::DrawnReadings* drawn, Solver& solver, Solution& solution,
-                    Noise& noise);
+                    const loop::DrawnReadings* drawn, Solution& solution, Noise& noise);
 
 }  // namespace mindahl::identification

@@ -160,13 +160,12 @@ ResponseColumns ResponseColumns::Of(const ScaledRecord& record) const {
   return part;
 }
 
-void Response::Bind(const Problem& problem) {
-  problem_ = &problem;
+Response::Response(const Problem& problem)
+    : problem_(problem), moves_(problem.parameters.PositionOfMotion()) {
   const std::vector<ScaledRecord>& records = problem.data->records;
-  moves_ = problem.parameters.PositionOfMotion();
   const bool is_late = moves_ < problem.parameters.size() &&
                        problem.parameters[moves_].term->motion == ContactMotion::kLate;
-  motions_.assign(records.size(), {});
+  motions_.resize(records.size());
   turns_.resize(records.size());
   histories_.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -183,13 +182,13 @@ void Response::Bind(const Problem& problem) {
 }
 
 const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
-  const ScaledRecord& record = problem_->data->records[r];
-  const Parameters& parameters = problem_->parameters;
+  const ScaledRecord& record = problem_.data->records[r];
+  const Parameters& parameters = problem_.parameters;
   const models::InitialContact initial = {
-      .state = problem_->initial_state,
-      .unloaded_displacement = problem_->is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
+      .state = problem_.initial_state,
+      .unloaded_displacement = problem_.is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
       .turns_at_first = record.begins_at_turn,
-      .asymmetry = IsMasing(*problem_) ? theta[kAsymmetry] : 0.0};
+      .asymmetry = IsMasing(problem_) ? theta[kAsymmetry] : 0.0};
   ContactMotion kind = ContactMotion::kMeasured;
   double amount = 0.0;
   if (moves_ < parameters.size()) {
@@ -202,40 +201,40 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
   const bool is_there = !motion.paths.empty() && motion.amount == amount &&
                         motion.initial.unloaded_displacement == initial.unloaded_displacement &&
                         motion.initial.asymmetry == initial.asymmetry;
-  if (!is_there) Locate(record, turns_[r], kind, amount, problem_->model->memory, initial, motion);
+  if (!is_there) Locate(record, turns_[r], kind, amount, problem_.model->memory, initial, motion);
   return motion;
 }
 
 models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) const {
   return {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kDisplacementOffset],
           columns[TermId::kRigStiffness],
-          IsMasing(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
+          IsMasing(problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
 }
 
 void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::span<double> t,
                             const ResponseColumns& columns) {
-  const ScaledRecord& record = problem_->data->records[r];
-  const models::NormalizedLaw law = LawUnder(*problem_, theta, record);
-  if (!record.load_ratio.empty() && IsMasing(*problem_)) {
-    loaded_response_.Evaluate(law, histories_[r], theta[problem_->parameters.PositionOfOrigin(r)],
-                              t, GradientOf(columns));
+  const ScaledRecord& record = problem_.data->records[r];
+  const models::NormalizedLaw law = LawUnder(problem_, theta, record);
+  if (!record.load_ratio.empty() && IsMasing(problem_)) {
+    loaded_response_.Evaluate(law, histories_[r], theta[problem_.parameters.PositionOfOrigin(r)], t,
+                              GradientOf(columns));
     return;
   }
   const Motion& motion = MotionOf(r, theta);
   const auto& [moved, path] = motion.paths.front();
   if (record.imposed == loop::Channel::kForce) {
     const bool is_below_slip = displacement_.Evaluate(
-        *problem_->model, {std::exp(theta[kSlipForce]), theta[kShape]}, path, record.force, t,
+        *problem_.model, {std::exp(theta[kSlipForce]), theta[kShape]}, path, record.force, t,
         {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
     if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
   } else if (motion.paths.size() > 1) {
     EvaluateBehindGap(law, motion, t, columns);
   } else {
-    response_.Evaluate(*problem_->model, law, path, moved.empty() ? record.displacement : moved, t,
+    response_.Evaluate(*problem_.model, law, path, moved.empty() ? record.displacement : moved, t,
                        GradientOf(columns));
   }
-  if (moves_ >= problem_->parameters.size()) return;
-  const std::span<double> by_amount = columns[problem_->parameters[moves_].term->id];
+  if (moves_ >= problem_.parameters.size()) return;
+  const std::span<double> by_amount = columns[problem_.parameters[moves_].term->id];
   if (by_amount.empty()) return;
   // The rounding of a difference by this much of θ is 1e-9 of the slip force. It is that of a
   // longer lag and a wider gap: without either the response has a kink.
@@ -264,7 +263,7 @@ void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion&
   }
   for (const double sign : {-1.0, 1.0}) {
     const auto& [displacement, path] = motion.paths[sign > 0 ? 0 : 1];
-    response_.Evaluate(*problem_->model, law, path, displacement, forces, GradientOf(of_side));
+    response_.Evaluate(*problem_.model, law, path, displacement, forces, GradientOf(of_side));
     for (std::size_t i = 0; i < size; ++i) {
       if (!(sign * forces[i] >= 0)) continue;
       t[i] = forces[i];
@@ -278,12 +277,12 @@ void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion&
 void Response::Evaluate(std::span<const double> theta, std::span<double> t,
                         const ResponseColumns& columns) {
   AskWhetherToGoOn();
-  for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
-    const ScaledRecord& record = problem_->data->records[r];
+  for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+    const ScaledRecord& record = problem_.data->records[r];
     const ResponseColumns parts = columns.Of(record);
     const std::span<double> values = record.Of(t);
     EvaluatePath(theta, r, values, parts);
-    if (!IsMasing(*problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
+    if (!IsMasing(problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
       ReadForceOfJoint(record, theta[kAsymmetry], values, parts);
     }
     if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);

@@ -59,13 +59,12 @@ class ResponseColumns {
 /// contact is unloaded, by its lag, its gap and its asymmetry, and its buffers.
 class Response {
  public:
-  Response() = default;
-  explicit Response(const Problem& problem) { Bind(problem); }
+  /// @param problem  must outlive this; it may not change, the weights of its samples may
+  explicit Response(const Problem& problem);
 
-  void Bind(const Problem& problem);
   void Evaluate(std::span<const double> theta, std::span<double> t,
                 const ResponseColumns& columns = {});
-  /// Returns where the contact of a record is, in the problem that is bound.
+  /// Returns where the contact of a record is.
   const Motion& MotionOf(std::size_t record, std::span<const double> theta);
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
@@ -83,10 +82,10 @@ class Response {
   void ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,
                         std::span<double> response, const ResponseColumns& columns) const;
   [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
-  [[nodiscard]] bool Has(TermId id) const { return !problem_->parameters[RowOf(id)].absent; }
+  [[nodiscard]] bool Has(TermId id) const { return !problem_.parameters[RowOf(id)].absent; }
 
-  const Problem* problem_ = nullptr;
-  std::size_t moves_ = 0;                         // of the parameter that moves the contact
+  const Problem& problem_;
+  std::size_t moves_;                             // of the parameter that moves the contact
   std::vector<std::vector<models::Turn>> turns_;  // of each record's motion
   std::vector<Motion> motions_;                   // of each record
   std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
@@ -129,7 +128,8 @@ void DifferentiateResponse(const Problem& problem, std::span<const double> theta
                            std::span<double> t, std::span<double> columns);
 
 /// Computes the weighted residuals, model − measured, and their derivatives by the parameters at
-/// `columns`. The response is bound to the problem.
+/// `columns`.
+/// @param response  of the problem
 /// @param residual  size() values
 /// @param jacobian  column-major, size() × columns.size()
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,

@@ -15,11 +15,8 @@ std::span<double> Writable(Eigen::VectorXd& column) {
 
 }  // namespace
 
-void ProjectedResidual::Bind(const Problem& problem) {
-  problem_ = &problem;
-  response_.Bind(problem);
-  searched_.clear();
-  theta_.clear();
+ProjectedResidual::ProjectedResidual(const Problem& problem)
+    : problem_(problem), response_(problem) {
   for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
@@ -35,17 +32,12 @@ void ProjectedResidual::Bind(const Problem& problem) {
   FactoriseColumns();
 }
 
-void ProjectedResidual::HoldAt(std::size_t parameter, double theta) {
-  theta_[parameter] = theta;
-  FactoriseColumns();
-}
-
 void ProjectedResidual::FactoriseColumns() {
-  const ScaledRecords& data = *problem_->data;
-  const auto size = static_cast<Eigen::Index>(problem_->size());
+  const ScaledRecords& data = *problem_.data;
+  const auto size = static_cast<Eigen::Index>(problem_.size());
   std::vector<std::size_t> eliminated;
   for (std::size_t p = 0; p < theta_.size(); ++p) {
-    const Parameter& parameter = problem_->parameters[p];
+    const Parameter& parameter = problem_.parameters[p];
     const bool is_searched = std::ranges::find(searched_, p) != searched_.end();
     if (parameter.term->is_linear && !parameter.fixed && !is_searched) eliminated.push_back(p);
   }
@@ -57,12 +49,12 @@ void ProjectedResidual::FactoriseColumns() {
     std::ranges::copy(record.response(), record.Of(Writable(measured_)).begin());
   }
   for (std::size_t p = 0; p < theta_.size(); ++p) {
-    if (!problem_->parameters[p].term->is_linear || theta_[p] == 0) continue;
-    AddColumn(*problem_, p, theta_, -theta_[p], Writable(measured_));
+    if (!problem_.parameters[p].term->is_linear || theta_[p] == 0) continue;
+    AddColumn(problem_, p, theta_, -theta_[p], Writable(measured_));
   }
   for (std::size_t k = 0; k < eliminated.size(); ++k) {
     double* const column = columns.col(static_cast<Eigen::Index>(k)).data();
-    AddColumn(*problem_, eliminated[k], theta_, 1.0, {column, problem_->size()});
+    AddColumn(problem_, eliminated[k], theta_, 1.0, {column, problem_.size()});
   }
   measured_.array() *= weight_.array();
   columns.array().colwise() *= weight_.array();
@@ -115,7 +107,7 @@ void ProjectedResidual::MoveTo(std::span<const double> u) {
   bool columns_move = false;
   for (std::size_t j = 0; j < u.size(); ++j) {
     const std::size_t p = searched_[j];
-    const Term& term = *problem_->parameters[p].term;
+    const Term& term = *problem_.parameters[p].term;
     const bool has_column = term.is_linear || !term.shapes.empty();
     columns_move = columns_move || (has_column && theta_[p] != u[j]);
     theta_[p] = u[j];
@@ -134,9 +126,9 @@ double ProjectedResidual::Regress(std::span<const double> theta) {
 /// Computes the residual from t, which is weighted and projected.
 /// @returns likewise
 double ProjectedResidual::ScaleTo(std::span<const double> theta) {
-  scale_ = std::exp(LogScaleAt(*problem_, theta));
+  scale_ = std::exp(LogScaleAt(problem_, theta));
   residual_ = scale_ * response_values_ - measured_;
-  const double cost = residual_.squaredNorm() + problem_->parameters.PriorCost(theta);
+  const double cost = residual_.squaredNorm() + problem_.parameters.PriorCost(theta);
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
@@ -150,7 +142,7 @@ double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
   response_.Evaluate(theta, Writable(response_values_));
   double cost = Regress(theta);
   const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
-  const Parameter& parameter = problem_->parameters[of_scale];
+  const Parameter& parameter = problem_.parameters[of_scale];
   if (!parameter.fixed) {
     const double best = response_values_.dot(measured_) / response_values_.squaredNorm();
     if (!(best > 0)) return std::numeric_limits<double>::infinity();
@@ -166,15 +158,15 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
   MoveTo(u);
   const auto count = static_cast<Eigen::Index>(u.size());
   derivatives_.resize(response_values_.size(), count);
-  DifferentiateResponse(*problem_, theta_, response_, searched_, Writable(response_values_),
+  DifferentiateResponse(problem_, theta_, response_, searched_, Writable(response_values_),
                         {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
   const double cost = Regress(theta_);
   derivatives_ *= scale_;
   const std::vector<double> theta = Theta();
   double* column = derivatives_.data();
   for (const std::size_t p : searched_) {
-    AddDerivativeOfColumns(*problem_, p, theta, {column, problem_->size()});
-    column += problem_->size();
+    AddDerivativeOfColumns(problem_, p, theta, {column, problem_.size()});
+    column += problem_.size();
   }
   derivatives_.array().colwise() *= weight_.array();
   derivatives_ -= basis_ * (basis_.transpose() * derivatives_);

@@ -16,18 +16,15 @@ namespace mindahl::identification {
 /// with a prior, are searched too; the residuals of priors are in the cost, not in residual().
 class ProjectedResidual {
  public:
-  /// @param problem  must outlive the use; its weights may change before the next Bind()
-  void Bind(const Problem& problem);
-
-  /// Moves a parameter that the problem holds.
-  void HoldAt(std::size_t parameter, double theta);
+  /// @param problem  must outlive this; neither it nor the weights of its samples may change
+  explicit ProjectedResidual(const Problem& problem);
 
   /// Positions of what is searched among the parameters.
   [[nodiscard]] std::span<const std::size_t> searched() const { return searched_; }
   [[nodiscard]] const Parameter& Searched(std::size_t j) const {
-    return problem_->parameters[searched_[j]];
+    return problem_.parameters[searched_[j]];
   }
-  [[nodiscard]] const Problem& problem() const { return *problem_; }
+  [[nodiscard]] const Problem& problem() const { return problem_; }
 
   /// Returns the sum of the squared weighted residuals; infinity where they are not finite.
   double Evaluate(std::span<const double> u);
@@ -52,9 +49,9 @@ class ProjectedResidual {
   void SolveLinear(std::span<double> theta) const;
   double Regress(std::span<const double> theta);
   double ScaleTo(std::span<const double> theta);
-  [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
+  [[nodiscard]] bool is_forced() const { return problem_.data->is_forced(); }
 
-  const Problem* problem_ = nullptr;
+  const Problem& problem_;
   Response response_;
   std::vector<std::size_t> searched_;
   std::vector<double> theta_;        // of what is not eliminated

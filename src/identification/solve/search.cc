@@ -206,8 +206,7 @@ const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
 /// Searches from θ, and keeps the solution where it is better.
 void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
                 Solution& best) {
-  Solution solution;
-  solver.Solve(theta, options, solution);
+  Solution solution = solver.Solve(theta, options);
   if (solution.sum_of_squares < best.sum_of_squares) best = std::move(solution);
 }
 
@@ -263,8 +262,7 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
 
 }  // namespace
 
-double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
-                    Solver& solver) {
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options) {
   const Problem& problem = candidate.problem;
   candidate.starts.clear();
   if (auto given = GivenStart(problem.parameters, options)) {
@@ -286,7 +284,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   const ScaledRecords& data = RecordsOfLooks(problem, has_kinks, thinned);
   Problem thin = problem;
   thin.data = &data;
-  solver.Bind(thin);
+  Solver solver(thin);
   Plane plane(thin, solver);
   std::vector<Look> looks = plane.Best();
   for (Look& look : looks) plane.LookForLag(look);
@@ -296,7 +294,6 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     return thin.parameters[p].term->presence == Presence::kOnDemand;
   });
   const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
-  Solution scratch;
   std::vector<Look> starts;
   for (Look& look : looks) {
     const double least = looks.front().cost;
@@ -311,10 +308,10 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     Look& start = starts.emplace_back(std::move(look));
     if (!options.start.empty()) continue;  // a start that is given is one
     const auto follow = [&](const std::vector<double>& theta, double share_of_cost) {
-      solver.Solve(theta, kRough, scratch);
-      if (!(scratch.sum_of_squares < share_of_cost * start.cost)) return;
-      start.theta = scratch.theta;
-      start.cost = scratch.sum_of_squares;
+      Solution solution = solver.Solve(theta, kRough);
+      if (!(solution.sum_of_squares < share_of_cost * start.cost)) return;
+      start.theta = std::move(solution.theta);
+      start.cost = solution.sum_of_squares;
     };
     follow(start.theta, 1.0);
     // The force of a sample that slips does not depend on σ and α, so that its gradient does not
@@ -335,7 +332,7 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
 }
 
 void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned,
-                              const FitOptions& options, Solver& solver) {
+                              const FitOptions& options) {
   constexpr std::size_t kMostNested = 3;
   if (!options.start.empty()) return;
   const Parameters& parameters = candidate.problem.parameters;
@@ -352,29 +349,27 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
     if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;
     Candidate smaller = candidate;
     smaller.problem.parameters.Fix(p, neutral);
-    FindStartsOf(smaller, thinned, options, solver);
-    if (terms.size() <= kMostNested) {
-      AddStartsOfSmallerModels(smaller, thinned, options, solver);
-    }
-    Descend(smaller, options, solver);
+    FindStartsOf(smaller, thinned, options);
+    if (terms.size() <= kMostNested) AddStartsOfSmallerModels(smaller, thinned, options);
+    Descend(smaller, options);
     const Solution& solution = smaller.solution;
     if (!std::isfinite(solution.sum_of_squares)) continue;
     candidate.starts.push_back(solution.theta);
   }
 }
 
-void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
+void Descend(Candidate& candidate, const FitOptions& options) {
   Solution& best = candidate.solution;
   best = {.sum_of_squares = std::numeric_limits<double>::infinity()};
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
-  solver.Bind(candidate.problem);
+  Solver solver(candidate.problem);
   for (const std::vector<double>& start : candidate.starts) {
     SearchOnce(start, SolverOptionsOf(options), solver, best);
   }
 }
 
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver) {
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options) {
   Solution& best = candidate.solution;
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
   constexpr int kMostRounds = 4;
@@ -383,6 +378,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver
   const SolverOptions search = SolverOptionsOf(options);
   SolverOptions look = search;
   look.max_iterations = std::min(search.max_iterations, kSteps);
+  Solver solver(candidate.problem);
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {
     last = kLower * best.sum_of_squares;

@@ -27,21 +27,20 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// linear eliminated (docs/theory.md §12). The best of each α, or where α is held of each third of
 /// the plane, goes on to the minimum of the thinned record.
 /// @returns the least cost there; infinity where none has the sign of the force
-double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options,
-                    Solver& solver);
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,
 /// for at most three terms, from the solutions of the models that they contain in turn.
 void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned,
-                              const FitOptions& options, Solver& solver);
+                              const FitOptions& options);
 
 /// Solves from each starting point and keeps the best solution.
-void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
+void Descend(Candidate& candidate, const FitOptions& options);
 
 /// Solves again from next to the best solution where there may be lower minima, as of a law with a
 /// sharp knee, of a loop that hardly slips and beside a rig, and goes on from the best as long as
 /// one is lower. Where a start is given it is the only one.
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options);
 
 }  // namespace mindahl::identification

@@ -335,7 +335,10 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   solution.report.iterations += static_cast<int>(summary.iterations.size());
 }
 
-void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
+/// Moves u to the minimum.
+/// @returns the solution but for θ
+Solution Solver::SearchFrom(std::span<double> u, const SolverOptions& options) {
+  Solution solution;
   SolverReport& report = solution.report;
   report.solver = "tiny_solver";
   // A third of the steps is left to the second opinion.
@@ -385,12 +388,12 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   }
   if (!is_evaluated) cost = residual_.Evaluate(u);
   solution.sum_of_squares = cost;
+  return solution;
 }
 
-void Solver::Solve(std::span<const double> start, const SolverOptions& options,
-                   Solution& solution) {
+Solution Solver::Solve(std::span<const double> start, const SolverOptions& options) {
   const Parameters& parameters = residual_.problem().parameters;
-  solution.report.iterations = 0;
+  Solution solution;
   std::vector<double> u;
   for (const std::size_t p : residual_.searched()) {
     u.push_back(std::clamp(start[p], parameters[p].lower, parameters[p].upper));
@@ -402,11 +405,12 @@ void Solver::Solve(std::span<const double> start, const SolverOptions& options,
     solution.report.termination = "CONVERGENCE";
     solution.report.message = "Every parameter that is not linear is fixed.";
   } else {
-    SearchFrom(u, options, solution);
+    solution = SearchFrom(u, options);
   }
   solution.theta = residual_.Theta();
   solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
+  return solution;
 }
 
 }  // namespace mindahl::identification

@@ -46,23 +46,20 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 /// - ceres::Solve with the bounds, from there on, where a coordinate ends at one, and wherever
 ///   TinySolver does not converge. The lower of the two costs is kept.
 ///
-/// Keeps its buffers.
+/// Searches of one solver share the basis of the eliminated columns and the buffers.
 class Solver {
  public:
-  /// @param problem  must outlive the solves; its weights may change between them
-  void Bind(const Problem& problem) { residual_.Bind(problem); }
-
-  /// Moves a parameter that the problem holds.
-  void HoldAt(std::size_t parameter, double theta) { residual_.HoldAt(parameter, theta); }
+  /// @param problem  must outlive this; neither it nor the weights of its samples may change
+  explicit Solver(const Problem& problem) : residual_(problem) {}
 
   /// Least cost with the ratios of θ, and all that is linear eliminated (projected_residual.h).
   double CostAt(std::span<double> theta) { return residual_.EvaluateFreely(theta); }
 
   /// @param start  θ, moved into the bounds
-  void Solve(std::span<const double> start, const SolverOptions& options, Solution& solution);
+  Solution Solve(std::span<const double> start, const SolverOptions& options);
 
  private:
-  void SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution);
+  Solution SearchFrom(std::span<double> u, const SolverOptions& options);
 
   ProjectedResidual residual_;
 };

@@ -31,10 +31,13 @@ bool AreFinite(std::span<const double> values) {
 
 UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit,
                                          std::unique_ptr<ceres::LossFunction> loss)
-    : problem_(problem), unit_(unit), loss_(std::move(loss)), blocks_(BlocksOf(problem)) {
+    : problem_(problem),
+      unit_(unit),
+      loss_(std::move(loss)),
+      blocks_(BlocksOf(problem)),
+      response_(problem) {
   set_num_residuals(static_cast<int>(problem.size()));
   mutable_parameter_block_sizes()->assign(blocks_.size(), 1);
-  response_.Bind(problem);
 }
 
 std::vector<std::size_t> UnprojectedResidual::BlocksOf(const Problem& problem) {
