@@ -119,6 +119,14 @@ struct Segment {
   }
   [[nodiscard]] double first() const { return At(bins.front()); }
   [[nodiscard]] double last() const { return At(bins.back()); }
+  [[nodiscard]] double DistanceOf(const Course::Bin& bin) const {
+    return std::abs(bin.value - line.At(bin.cycle));
+  }
+  /// Returns by how much the line misses the values, beyond their scatter: of a curve.
+  [[nodiscard]] double Misfit(const Noise& noise) const {
+    const double squares = line.squares() / static_cast<double>(bins.size());
+    return std::sqrt(std::max(0.0, squares - noise.variance) / bins.front().count);
+  }
 };
 
 /// Appends the segments of these bins. The bin between two segments is in the line of neither, as
@@ -154,10 +162,7 @@ void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segm
     Divide(bins.subspan(place + 1), noise, depth - 1, segments);
     Segment& before = segments[next - 1];
     Segment& after = segments[next];
-    const auto distance = [&](const Segment& segment) {
-      return std::abs(bins[place].value - segment.line.At(bins[place].cycle));
-    };
-    if (distance(before) < distance(after)) {
+    if (before.DistanceOf(bins[place]) < after.DistanceOf(bins[place])) {
       before.bins = {before.bins.data(), before.bins.size() + 1};
     } else {
       after.bins = {after.bins.data() - 1, after.bins.size() + 1};
@@ -200,14 +205,28 @@ std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
   return settled;
 }
 
+/// Returns the first cycle after a step: in the bin that is a mixture of both
+/// levels, by their shares.
+std::size_t PlaceOfStep(const Segment& before, const Segment& after) {
+  const Course::Bin& last = before.bins.back();
+  const Course::Bin& first = after.bins.front();
+  const Course::Bin& mixed = before.DistanceOf(last) > after.DistanceOf(first) ? last : first;
+  const double to = after.line.At(mixed.cycle);
+  const double share = (mixed.value - to) / (before.line.At(mixed.cycle) - to);
+  const auto cycles = static_cast<double>(mixed.last_cycle + 1 - mixed.first_cycle);
+  return mixed.first_cycle +
+         static_cast<std::size_t>(std::lround(cycles * std::clamp(share, 0.0, 1.0)));
+}
+
 /// Returns the step from one segment to the next where there is one: a jump by
-/// more than slopes make of it within the shortest segment, and beyond chance
-/// at one of so many places.
+/// more than slopes make of it within the shortest segment and lines miss of a
+/// curve, and beyond chance at one of so many places.
 std::optional<Change> StepBetween(const Segment& before, const Segment& after, const Noise& noise,
                                   std::size_t places) {
-  const std::size_t cycle = before.bins.back().last_cycle + 1;
-  Change step = {cycle, cycle, before.last(), after.first()};
+  Change step = {.from = before.last(), .to = after.first()};
   const double jump = std::abs(step.to - step.from);
+  if (!(jump > kOfScatter * std::max(before.Misfit(noise), after.Misfit(noise)))) return {};
+  step.first_cycle = step.last_cycle = PlaceOfStep(before, after);
   const double steepest = std::max(std::abs(before.line.slope()), std::abs(after.line.slope()));
   const double width = static_cast<double>(kLeastBins) * before.bins.front().count;
   const double error = std::sqrt(noise.variance * (before.line.VarianceAt(before.bins.back()) +

@@ -280,6 +280,32 @@ TEST(Describe, FindsAStepBetweenRowsOfSeveralCycles) {
   EXPECT_EQ(description.settled_at, 201U);
 }
 
+TEST(Describe, FindsNoStepInACurveWithHardlyAnyNoise) {
+  Generator generator(3);
+  for (const double settling : {20.0, 60.0, 200.0}) {
+    Course course;
+    for (std::size_t row = 0; row < 500; ++row) {
+      const double n = static_cast<double>(row);
+      course.Add(row + 1,
+                 0.35 + 0.25 * (1 - std::exp(-n / settling)) + 0.0003 * testing::Normal(generator));
+    }
+    for (const Change& change : Describe(course).changes) {
+      EXPECT_FALSE(change.is_step()) << settling << ": " << change.first_cycle;
+    }
+  }
+}
+
+TEST(Describe, FindsAStepWithinABinOfCyclesWhereItIs) {
+  for (const std::size_t place : {3201, 3204, 3210, 3216, 3217}) {
+    Course course;
+    for (std::size_t cycle = 1; cycle <= 5000; ++cycle)
+      course.Add(cycle, cycle < place ? 5.0 : 4.0);
+    const CourseDescription description = Describe(course);
+    ASSERT_THAT(description.changes, SizeIs(1));
+    EXPECT_EQ(description.changes[0].first_cycle, place);
+  }
+}
+
 TEST(Describe, HardlyEverFindsAChangeInNoise) {
   constexpr int kCourses = 200;
   for (const double noise : {kNoise, kNoise / 5}) {  // the less, the smaller a change is reported
