@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Number
 from typing import Any, Optional, Union
@@ -96,6 +97,8 @@ def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
     if isinstance(values, np.ma.MaskedArray) and np.any(values.mask):
         raise ValueError(f"{name} has masked values: leave these samples out of all arrays")
     given = np.asarray(values)
+    if given.dtype.kind in "mM":  # times of pandas
+        given = (given - given[:1]) / np.timedelta64(1, "s")
     elements = given
     if given.dtype == object or (keep_missing and given.dtype.kind in "UT"):  # as of pandas' Float64
         try:
@@ -137,7 +140,8 @@ def is_quantity(value: Any) -> bool:
 
 def with_unit(name: str, value: Any, units: Sequence[str]) -> tuple[Any, Optional[str]]:
     """Numbers and their unit: of a quantity of pint in the first of `units` that it can be in, of an
-    array of xarray that of its attribute "units"; None of what states none."""
+    array of xarray that of its attribute "units", of a series of pandas that in brackets behind its
+    name, "x [um]"; None of what states none."""
     if is_quantity(value):
         for symbol in units:
             if value.check(value._REGISTRY.Quantity(1, symbol).dimensionality):
@@ -145,6 +149,9 @@ def with_unit(name: str, value: Any, units: Sequence[str]) -> tuple[Any, Optiona
         raise ValueError(f"{name} has the unit {value.units}: must be one of {', '.join(units)}")
     attributes = getattr(value, "attrs", None)
     unit = attributes.get("units") if isinstance(attributes, Mapping) else None
+    named = re.search(r"[\[(]([^\])]+)[\])]\s*$", str(getattr(value, "name", "")))
+    if unit is None and named:
+        unit = named[1]
     return value, unit if isinstance(unit, str) else None
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from . import _mindahl
 from ._arguments import Floats, Uncertain, array, is_pair, number, words
 from ._records import columns_by_name, copy_of, is_path, name_of
-from ._result import FitWarning, Report
+from ._result import FitWarning, Report, Told
 
 
 class Answer(NamedTuple):
@@ -81,6 +81,9 @@ def _written(path: str, source: Any) -> str:
     have."""
     if hasattr(source, "read"):
         return copy_of(source, path)
+    if isinstance(source, Told):
+        Path(path).write_text(source.to_json(), encoding="utf-8")
+        return path
     columns = (list(zip(("displacement [m]", "force [N]"), source)) if is_pair(source) else
                columns_by_name(source))
     if columns is None:
@@ -127,7 +130,8 @@ def convert(
 ) -> Conversion:
     """Converts a contact's steady loop to another law or program.
 
-    fit: file of `mindahl fit --json`, whose law and amplitude are taken unless given here.
+    fit: a result of fit(), a file of `mindahl fit --json` or to_json(), or a record, which is fitted:
+        law and amplitude are taken unless given here.
     sigma [N/m], alpha [-] (1/3), slip_force Tc [N]: parameters of the law from_, "masing" (default)
         or "dahl".
     amplitude: X [m] of the contact's steady loop.

@@ -136,7 +136,8 @@ def columns_by_name(source: Any) -> Optional[Columns]:
                  ("time [s]", source.time), (f"normal load [{force}]", source.normal_load)]
         return [(name, values) for name, values in found if values is not None]
     if hasattr(source, "columns") and hasattr(source, "iloc"):  # as pandas has it
-        return [(str(name), source.iloc[:, k].to_numpy()) for k, name in enumerate(source.columns)]
+        frame = [(str(name), source.iloc[:, k].to_numpy()) for k, name in enumerate(source.columns)]
+        return [(f"{name} [s]" if values.dtype.kind in "mM" else name, values) for name, values in frame]
     if isinstance(source, Mapping):
         members = {**getattr(source, "coords", {}), **source}  # as xarray's Dataset has them
         named = [(name, *with_unit(str(name), values, ())) for name, values in members.items() if np.ndim(values)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
@@ -377,7 +378,8 @@ class FitResult(Told):
         """The force [N] that the fit predicts along a displacement [m] from the unloaded contact, of the
         sign that the record has.
 
-        Excursions that are smaller than the reversal gate of the first record are noise here too.
+        Of several records it has the gate and the offsets of the first, of a load series the law at the
+        mean load. Excursions that are smaller than the reversal gate are noise here too.
         Raises ValueError for a fit that failed, of a cycled contact, or with terms that simulate()
             does not have, and for one that was read from JSON, which has neither sign nor gate.
         """
@@ -392,8 +394,10 @@ class FitResult(Told):
                              "fit it again, or save() it")
         own = {name: values.pop(name) for name in ("sigma", "alpha", "slip_force", "rig_stiffness",
                                                    "asymmetry") if name in values}
-        offset, origin = values.pop("force_offset", 0.0), values.pop("displacement_offset", 0.0)
-        others = [name for name, value in values.items() if value]
+        offset, origin = (values.get(name, values.get(f"{name}_1", 0.0))
+                          for name in ("force_offset", "displacement_offset"))
+        in_force = re.compile(r"(force|displacement)_offset(_\d+)?|load_exponent")
+        others = [name for name, value in values.items() if value and not in_force.fullmatch(name)]
         if others:
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
         force = _mindahl.simulate(

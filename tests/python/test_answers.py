@@ -54,6 +54,12 @@ def test_plan_warns_of_a_record_and_says_what_is_not_reached():
     assert pair.to_json() == mindahl.plan(record).to_json() == mindahl.plan(SPHERE).to_json()
 
 
+def test_convert_takes_a_result_and_a_record():
+    expected = program("convert", SPHERE, "--to", "dahl", "--json", "-")
+    assert mindahl.convert(mindahl.fit(SPHERE), to="dahl").to_json() == expected
+    assert mindahl.convert(SPHERE, to="dahl").to_json() == expected
+
+
 def test_tradeoff_is_the_program_s():
     result = mindahl.command("tradeoff", tolerance="5%", **LAW)
     expected = program("tradeoff", "--tolerance", "5%", *LAW_OPTIONS, "--json", "-")

@@ -105,6 +105,18 @@ def test_a_frame_is_read_by_the_names_and_units_of_its_columns(sphere):
     expected = mindahl.fit(displacement, force, time=seconds)
     assert result.sigma.value == pytest.approx(expected.sigma.value, rel=scale_rounding)
     assert result.input.columns.displacement.unit == "um"
+    series = mindahl.fit(frame["x [um]"], frame["F (kN)"], time=frame["Time, s"])
+    assert series.sigma.value == pytest.approx(expected.sigma.value, rel=scale_rounding)
+
+
+@pytest.mark.parametrize("times", [pandas.to_datetime, pandas.to_timedelta])
+def test_times_of_pandas_are_read_in_seconds(times, sphere):
+    seconds, displacement, force = sphere
+    frame = pandas.DataFrame({"time": times(seconds, unit="s"), "x [m]": displacement, "F [N]": force})
+    resolution = 1e-9  # [s]
+    for record in (mindahl.fit(frame).records[0],
+                   mindahl.fit(displacement, force, time=frame["time"]).records[0]):
+        np.testing.assert_allclose(record.time, seconds, rtol=0, atol=resolution)
 
 
 @pytest.mark.parametrize("dtype", ["Float64", object, "string", str])

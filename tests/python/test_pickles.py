@@ -137,6 +137,13 @@ def test_a_prediction_along_the_record_is_the_fit(sphere, keywords, sign):
     np.testing.assert_allclose(result.predict(displacement), result.fitted_force, rtol=0, atol=rounding)
 
 
+def test_a_prediction_of_several_records_is_of_the_first(sphere):
+    _, displacement, force = sphere
+    result = mindahl.fit([(displacement, force), (displacement + 1e-6, force + 5.0)], initial_state="virgin")
+    rounding = 64 * np.finfo(float).eps * np.abs(force).max()
+    np.testing.assert_allclose(result.predict(displacement), result.fitted_force[0], rtol=0, atol=rounding)
+
+
 def test_a_prediction_takes_no_noise_for_a_reversal(tmp_path):
     generator = np.random.default_rng(4)
     _, drive = mindahl.excitation(amplitude=2e-6, cycles=3, samples_per_cycle=2000)
