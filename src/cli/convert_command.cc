@@ -47,13 +47,18 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
     const Json found = report::At(fit, place);
     if (!value && found.is_number()) value = found.get<double>();
   };
+  std::optional<double> drag;
+  take(drag, "/parameters/drag_fraction/value");
   for (const auto& [value, name] : {std::pair(&request.law.sigma, "sigma"),
                                     {&request.law.alpha, "alpha"},
                                     {&request.law.slip_force, "slip_force"}}) {
     const std::string place = fmt::format("/parameters/{}", name);
     const Json known = report::At(fit, place + "/identifiability");
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
-    if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
+    if (*value || (is_open && report::At(fit, place + "/status") != "fixed")) continue;
+    take(*value, place + "/value");
+    // The force of a drag, which no target has, is in both.
+    if (drag && *value && name != std::string_view("alpha")) **value *= 1 - *drag;
   }
   const LawOptions& law = request.law;
   if (request.amplitude || !law.sigma || !law.slip_force) return;

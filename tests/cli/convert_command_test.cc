@@ -130,6 +130,18 @@ TEST_F(Convert, SaysWhatOfAFitTheTargetHasNot) {
               HasSubstr("of the law alone: without the fit's asymmetry, viscous\n"));
 }
 
+TEST_F(Convert, TakesTheForceOfADragOffTheLawOfAFit) {
+  const std::string fit = Write("fit.json", R"({"schema": "mindahl.fit/2", "model": "dahl",
+      "parameters": {"sigma": {"value": 5e7}, "alpha": {"value": 0.5}, "slip_force": {"value": 40},
+      "drag_fraction": {"value": 0.25}}, "measured": {"amplitude": 2e-6}})");
+  const json made = JsonOf("convert --to dahl " + fit);
+  EXPECT_EQ(made["from"]["sigma"], 3.75e7);
+  EXPECT_EQ(made["from"]["alpha"], 0.5);
+  EXPECT_EQ(made["from"]["slip_force"], 30.0);
+  const json given = JsonOf("convert --to dahl --slip-force 40 " + fit);
+  EXPECT_EQ(given["from"]["slip_force"], 40.0);
+}
+
 TEST_F(Convert, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
   // Half of what Jenkins' element slips at.
   const std::string text =
