@@ -30,9 +30,22 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   });
 }
 
+/// True if a record begins where a fit has the contact unloaded, whatever forces are added to its
+/// own.
+bool BeginsUnloaded(const FitResult& fit, std::size_t record, double displacement) {
+  constexpr double kUnloaded = 0.05;  // of Tc
+  const ParameterEstimate* const origin = fit.FindOf(fit.records[record], "displacement_offset");
+  return fit.initial_state == InitialState::kVirgin && origin != nullptr &&
+         std::abs(displacement - origin->value) * fit.law.tangential_stiffness <=
+             kUnloaded * fit.law.slip_force;
+}
+
 /// Returns what lies before the first turns of records that begin under a force, with a past that
 /// they do not show.
-std::vector<SampleRange> UnknownPast(const ScaledRecords& data, const FitResult& fit) {
+/// @param dahl  fit of Dahl's own law
+std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
+                                     const ScaledRecords& data, const FitResult& fit,
+                                     const FitResult& dahl) {
   constexpr double kUnloaded = 0.05;   // of the half range
   constexpr double kDeviations = 4.0;  // of the noise
   const double noise = std::sqrt(WhiteVariance(fit)) / data.response_unit();
@@ -43,6 +56,7 @@ std::vector<SampleRange> UnknownPast(const ScaledRecords& data, const FitResult&
     const auto [low, high] = std::ranges::minmax(force);
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
     if (reversals.empty() || !(std::abs(force.front() - (low + high) / 2) > unloaded)) continue;
+    if (BeginsUnloaded(dahl, r, records[r].displacement.front())) continue;
     past.push_back({r, 0, reversals.front()});
   }
   return past;
@@ -173,7 +187,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   // and Dahl's leaves but noise.
   const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
-      is_open && is_for_dahl ? UnknownPast(data, fit) : std::vector<SampleRange>{};
+      is_open && is_for_dahl ? UnknownPast(records, data, fit, is_masing ? *other : fit)
+                             : std::vector<SampleRange>{};
   if (!past.empty() && is_one_amplitude) {
     const auto leaves_more = [&](const FitResult& of) {
       return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));

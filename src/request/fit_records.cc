@@ -244,11 +244,18 @@ void AddTerm(const std::string& name, const Record& record, FitOptions& options,
   step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
+/// True if the law is the program's choice, and the fit leaves it open: a step may decide it.
+bool LeavesLawOpen(const FitRequest& request, const FitResult& fit) {
+  return request.fit.model == nullptr && fit.law_choice && !fit.law_choice->decided;
+}
+
 /// Fits with the options of a step.
 /// @returns false where the record does not determine it, or the options are not those of its fit
-bool TryFit(std::span<const Record> records, const FitOptions& tried, FitResult& found) {
+bool TryFit(std::span<const Record> records, const FitOptions& tried, bool chooses_law,
+            FitResult& found) {
   try {
-    found = identification::Fit(records, tried, identification::Depth::kIntervals);
+    found = chooses_law ? FitByLaw(true, tried, records).fit
+                        : identification::Fit(records, tried, identification::Depth::kIntervals);
   } catch (const InvalidArgument&) {
     return false;
   }
@@ -266,7 +273,8 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
   constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
-  if (!TryFit(records, tried, found) || found.adequacy.verdict != AdequacyVerdict::kAdequate ||
+  if (!TryFit(records, tried, LeavesLawOpen(request, fit), found) ||
+      found.adequacy.verdict != AdequacyVerdict::kAdequate ||
       found.rms > kOfSteps * found.EncoderStep()) {
     return std::nullopt;
   }
@@ -291,7 +299,9 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   const bool is_other_law = fit.law_choice && fit.law_choice->prefers_alternative();
   if (!fit.converged || !(before > kLeastMisfit) || is_other_law ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
-      fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr) {
+      fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
+      fit.FindFinding("prior_contradicted") != nullptr ||
+      fit.FindFinding("model_inadequate", "no_loop") != nullptr) {
     return std::nullopt;
   }
   if (fit.EncoderStep() > options.thresholds.coarse_step * fit.WidestRecord().facts.amplitude) {
@@ -303,7 +313,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     FitOptions tried = options;
     report::NextStep step;
     AddTerm(name, records.front(), tried, step);
-    if (!TryFit(records, tried, found)) continue;
+    if (!TryFit(records, tried, LeavesLawOpen(request, fit), found)) continue;
     const std::optional<double> after = found.adequacy.misfit_over_half_gap;
     if (!after || *after > (1 - options.thresholds.advised_gain) * *before) continue;
     if (LosesSlipForce(fit, found, tried)) continue;
@@ -402,9 +412,11 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     made.next =
         FindNextStep(request, asked.options, records, !made.left_out.empty(), asked.fit, found);
   }
-  if (made.next) identification::IncludeFit(found, asked.options.thresholds, asked.fit);
-  // With the step another law may be the better one, and miss otherwise.
-  if (made.next && request.fit.model == nullptr) {
+  if (made.next && found.model == asked.fit.model) {
+    identification::IncludeFit(found, asked.options.thresholds, asked.fit);
+  }
+  // With the step another law than the one that was tried may be the better one.
+  if (made.next && request.fit.model == nullptr && !LeavesLawOpen(request, asked.fit)) {
     made.next->options += fmt::format(" --model {}", asked.options.model->name);
   }
   const bool is_described = made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate;

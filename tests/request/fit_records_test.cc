@@ -184,8 +184,9 @@ TEST(NextStep, IsTheFirstThatGainsAndLeavesTheSlipForceUnlessAnotherCauseExplain
     SCOPED_TRACE(advice.reason);
     const report::Report made = FitRecords({}, {FileFor(advice)});
     EXPECT_NE(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
-    EXPECT_EQ(made.next ? made.next->options : "",
-              *advice.options == '\0' ? "" : std::string(advice.options) + " --model mindlin-dahl");
+    const bool is_open = made.fit.law_choice && !made.fit.law_choice->decided;
+    const char* const law = is_open || *advice.options == '\0' ? "" : " --model mindlin-dahl";
+    EXPECT_EQ(made.next ? made.next->options : "", std::string(advice.options) + law);
   }
 }
 
@@ -255,6 +256,55 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
               AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
 }
 
+/// Dahl's own law from rest, with a force of the velocity.
+io::RecordFile ViscousFileOfDahl() {
+  Generator generator(4);
+  io::RecordFile file =
+      SineFile("dahl", {4e7, 1.0, 40.0}, 6e-6, testing::Sine(4, 200), 0.1, generator);
+  for (std::size_t i = 0; i < file.record.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
+    file.record.force[i] += 6 * std::cos(phase);
+    file.record.time.push_back(0.005 * static_cast<double>(i));
+  }
+  return file;
+}
+
+TEST(Law, IsDahlsOfARecordThatBeginsUnderAForceOfATerm) {
+  FitRequest request;
+  request.terms = {"viscous"};
+  const identification::FitResult fit = FitRecords(request, {ViscousFileOfDahl()}).fit;
+  EXPECT_EQ(fit.model->name, "dahl");
+  EXPECT_EQ(fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_TRUE(testing::Covers(*fit.Find("sigma"), 4e7));
+}
+
+TEST(NextStep, MayDecideTheLaw) {
+  const report::Report made = FitRecords({}, {ViscousFileOfDahl()});
+  EXPECT_EQ(made.fit.model->name, "mindlin-dahl");
+  ASSERT_TRUE(made.next);
+  EXPECT_EQ(made.next->options, "--terms viscous");
+  FitRequest followed;
+  followed.terms = {"viscous"};
+  const identification::FitResult fit = FitRecords(followed, {ViscousFileOfDahl()}).fit;
+  EXPECT_DOUBLE_EQ(made.next->misfit_after, *fit.adequacy.misfit_over_half_gap);
+}
+
+TEST(NextStep, IsNoneBesideAValueThatTheRecordContradictsOrWithoutALoop) {
+  Generator generator(4);
+  const io::RecordFile file =
+      SineFile("mindlin-dahl", {4e7, 1.0 / 3, 40.0}, 4e-6, testing::Sine(3, 200), 0.1, generator);
+  FitRequest request;
+  request.fit.fixed["alpha"] = 0.4;
+  const report::Report held = FitRecords(request, {file});
+  ASSERT_NE(held.fit.FindFinding("prior_contradicted", "held"), nullptr);
+  EXPECT_FALSE(held.next);
+  io::RecordFile unmoved = file;
+  for (double& force : unmoved.record.force) force = testing::Normal(generator);
+  const report::Report made = FitRecords({}, {unmoved});
+  ASSERT_NE(made.fit.FindFinding("model_inadequate", "no_loop"), nullptr);
+  EXPECT_FALSE(made.next);
+}
+
 TEST(NextStep, GoesOnFromTermsThatAreNamed) {
   Generator generator(4);
   io::RecordFile file =
@@ -308,7 +358,7 @@ TEST(NextStep, IsAFitOfTheDisplacementThatACoarseEncoderReads) {
   const io::RecordFile file = EncoderFile();
   const report::Report made = FitRecords({}, {file});
   ASSERT_TRUE(made.next);
-  EXPECT_EQ(made.next->options, "--noise-in displacement --model mindlin-dahl");
+  EXPECT_EQ(made.next->options, "--noise-in displacement");
   EXPECT_TRUE(made.next->is_over_amplitude);
   FitRequest followed;
   followed.fit.preparation.excitation = loop::Channel::kForce;
