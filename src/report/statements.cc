@@ -136,6 +136,9 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},
+    {"prior_contradicted.held",
+     "the value that is held lies {distance} standard deviations from what the record says: fit "
+     "it"},
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses
@@ -165,7 +168,7 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
                     const Units& units) {
   if (place == "parameters") return fmt::format("{}", fmt::join(finding.parameters, ", "));
   if (place == "parameter") return finding.parameters.empty() ? "NAME" : finding.parameters.front();
-  if (place == "confidence") return fmt::format("{:.0f} %", 100 * fit.confidence);
+  if (place == "confidence") return fmt::format("{:.4g} %", 100 * fit.confidence);
   if (place == "message") return fit.solver.message;
   if (place == "remedy") {  // none of what the model misses
     const bool is_noise = fit.adequacy.verdict == AdequacyVerdict::kAdequate;

@@ -55,6 +55,23 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
   }
 }
 
+TEST(Discrepancy, OpenSlipForceBesideASpringThatIsNoTermIsBoundedByTheGap) {
+  // A spring that hardens carries more than the contact, whose gap is Tc's.
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double place = record.displacement[i] / kReach;
+    record.force[i] += 2.5 * kLaw.slip_force * std::sin(0.4 * place) / std::sin(0.4);
+  }
+  const FitResult fit = FitNoisy(record);
+  EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  ASSERT_TRUE(slip_force.lower95);
+  EXPECT_FALSE(slip_force.upper95);
+  EXPECT_LE(*slip_force.lower95, *fit.WidestRecord().facts.half_gap);
+  EXPECT_LE(*slip_force.lower95, kLaw.slip_force);
+  EXPECT_GT(*slip_force.lower95, 0.9 * kLaw.slip_force);
+}
+
 TEST(Discrepancy, IncludesTheIntervalOfAContactInACompliantRig) {
   constexpr double kRigStiffness = 8e7;
   Record record = Loop();

@@ -121,6 +121,19 @@ TEST(Prior, ThatTheRecordContradictsIsAMisfit) {
   }
 }
 
+TEST(Prior, OfAValueThatIsHeldIsContradictedWhereTheModelDoesNotDescribeTheRecord) {
+  const double error = *FitOne(TimedLoop(), Options()).Find("alpha")->standard_error;
+  for (const double off : {1.0, 20.0}) {
+    FitOptions options = Options();
+    options.fixed["alpha"] = kLaw.shape_exponent + off * error;
+    const FitResult fit = FitOne(TimedLoop(), options);
+    const Finding* const finding = fit.FindFinding("prior_contradicted", "held");
+    EXPECT_EQ(finding != nullptr, off > 10) << off;
+    if (finding == nullptr) continue;
+    EXPECT_NEAR(finding->numbers.front().second, off, 0.5 * off);
+  }
+}
+
 /// The look from which a search starts weighs the prior of the place that it looks at.
 TEST(Prior, CountsWhereASearchLooks) {
   FitOptions options = Options();

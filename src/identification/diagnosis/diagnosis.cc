@@ -169,43 +169,61 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                  .kind = "few_places"};
 }
 
-/// Parameters whose prior lies far from the records' own estimate, over the standard deviation of
-/// that distance: a step to first order without the prior.
-std::optional<Finding> FindContradictedPrior(const Estimates& fitted,
-                                             const Thresholds& thresholds) {
+/// Returns how far the records' own estimate of a parameter lies from what is known of it, over the
+/// standard deviation of that distance: by a step to first order without that knowledge.
+/// @param own          derivative of the weighted residuals by the parameter
+/// @param others       likewise by the free ones
+/// @param off          of the parameter from what is known
+/// @param uncertainty  of that
+double DistanceOfOwn(const Problem& problem, Eigen::VectorXd own, const Eigen::MatrixXd& others,
+                     const Eigen::VectorXd& residual, double off, double uncertainty) {
+  // What no other parameter explains.
+  if (others.cols() > 0) own -= others * others.colPivHouseholderQr().solve(own);
+  const double information = own.squaredNorm();
+  const double step = -own.dot(residual) / information;
+  const Eigen::VectorXd left = residual + own * step;
+  const double effective = EffectiveSamples(*problem.data, {left.data(), problem.size()});
+  const double error = left.norm() / std::sqrt(effective * information);
+  return std::abs(off + step) / std::hypot(error, uncertainty);
+}
+
+/// Parameters whose prior lies far from the records' own estimate; where the model does not
+/// describe the records, also those that the user holds elsewhere.
+std::vector<Finding> FindContradicted(const Estimates& fitted, const FitOptions& options,
+                                      const FitResult& result) {
   const Problem& problem = fitted.problem();
   const std::vector<double>& theta = fitted.solution().theta;
   const std::vector<std::size_t>& free = problem.parameters.free();
-  Finding finding{.code = "prior_contradicted"};
-  double farthest = 0.0;
   const Linearization at = WithPriors(problem, theta, fitted.linearization());
   Eigen::Index row = fitted.residual().size() - 1;
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const Parameter& parameter = problem.parameters[free[j]];
-    if (!parameter.has_prior()) continue;
-    const auto place = static_cast<Eigen::Index>(j);
-    ++row;
+  std::vector<Finding> findings;
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    const std::string name = problem.parameters.NameOf(p);
+    const bool is_held = parameter.fixed && options.fixed.contains(name) &&
+                         result.adequacy.verdict != AdequacyVerdict::kAdequate;
     Eigen::MatrixXd others = at.jacobian;
-    others.row(row).setZero();
-    others.col(place).setZero();
-    Eigen::VectorXd own = at.jacobian.col(place);
-    own[row] = 0.0;
-    own -= others * others.colPivHouseholderQr().solve(own);  // what no other parameter explains
-    const double information = own.squaredNorm();
-    const double step = -own.dot(at.residual) / information;
-    const Eigen::VectorXd left = at.residual + own * step;
-    const double effective = EffectiveSamples(*problem.data, {left.data(), problem.size()});
-    const double variance = static_cast<double>(problem.data->counted) / effective / information +
-                            1 / std::pow(parameter.prior_root_weight, 2);
-    const double uncertainty = problem.data->prior_noise * std::sqrt(variance);
-    const double distance = std::abs(theta[free[j]] + step - parameter.prior_theta) / uncertainty;
-    if (!(distance > thresholds.prior_distance)) continue;
-    finding.parameters.push_back(problem.parameters.NameOf(free[j]));
-    farthest = std::max(farthest, distance);
+    double distance = 0.0;
+    if (is_held) {
+      Eigen::VectorXd own = LinearizeAt(problem, theta, {&p, 1}).jacobian.col(0);
+      own.conservativeResizeLike(Eigen::VectorXd::Zero(others.rows()));
+      distance = DistanceOfOwn(problem, own, others, at.residual, 0.0, 0.0);
+    } else if (!parameter.fixed && parameter.has_prior()) {
+      const auto place = std::ranges::find(free, p) - free.begin();
+      Eigen::VectorXd own = others.col(place);
+      own[++row] = 0.0;
+      others.row(row).setZero();
+      others.col(place).setZero();
+      distance = DistanceOfOwn(problem, own, others, at.residual, theta[p] - parameter.prior_theta,
+                               problem.data->prior_noise / parameter.prior_root_weight);
+    }
+    if (!(distance > options.thresholds.prior_distance)) continue;
+    findings.push_back({.code = "prior_contradicted",
+                        .parameters = {name},
+                        .numbers = {{"distance", distance}},
+                        .kind = is_held ? "held" : ""});
   }
-  if (finding.parameters.empty()) return std::nullopt;
-  finding.numbers = {{"distance", farthest}};
-  return finding;
+  return findings;
 }
 
 }  // namespace
@@ -376,7 +394,7 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
     if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records, result));
   }
   Append(findings, FindUntoldAsymmetry(result, thresholds));
-  Append(findings, FindContradictedPrior(fitted, thresholds));
+  Append(findings, FindContradicted(fitted, options, result));
   Append(findings, FindOpenSlipForce(result));
   return findings;
 }

@@ -237,7 +237,17 @@ ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResul
   // A fitted force in addition to the contact's may be a part of T*.
   const bool has_added_force = std::ranges::any_of(
       fitted.free(), [&](std::size_t p) { return fitted[p].term->adds_force(); });
-  if (!is_open || has_added_force) return slip_force;
+  if (!is_open) return slip_force;
+  const std::optional<double> half_gap = result.MeasuredHalfGap();
+  if (result.depth >= Depth::kIntervals && half_gap &&
+      result.adequacy.verdict != AdequacyVerdict::kAdequate) {
+    // What the model misses may be a force beside the contact's, which the gap alone has not in it.
+    const RecordFit& widest = result.WidestRecord();
+    const double scatter = ScatterOfCycles(widest.facts, result.confidence) / widest.load_ratio;
+    SetInterval(slip_force, {.lower = std::max(*half_gap - scatter, 0.0)});
+    return slip_force;
+  }
+  if (has_added_force) return slip_force;
   const bool is_forced = result.response == loop::Channel::kDisplacement;
   // Half the distance between the medians of a few ends is known to about half its white noise.
   const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));

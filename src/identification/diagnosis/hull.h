@@ -54,7 +54,8 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
                                     const FitResult& result);
 
 /// Returns Tc; where its interval is open above its lower limit is no less than the force that the
-/// contact is seen to carry: where no force beside the contact's is fitted, T*.
+/// contact is seen to carry: where no force beside the contact's is fitted, T*; the half gap where
+/// the model does not describe the record.
 ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResult& result);
 
 }  // namespace mindahl::identification
