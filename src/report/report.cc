@@ -141,8 +141,7 @@ std::string DifferentLoads(const Report& report) {
   const FitResult& fit = report.fit;
   const bool is_series = fit.is_load_series();
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  if (fit.records.size() < 2 || (fit.normal_load && !is_series) ||
-      verdict == AdequacyVerdict::kAdequate ||
+  if (fit.records.size() < 2 || verdict == AdequacyVerdict::kAdequate ||
       (!is_series && verdict != AdequacyVerdict::kInadequate)) {
     return "";
   }
