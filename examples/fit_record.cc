@@ -9,7 +9,7 @@ using namespace mindahl::identification;
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const mindahl::loop::Record record = mindahl::io::ReadRecord(argv[1]).record;
-  Fitter fitter;  // keeps its memory from one fit to the next
+  Fitter fitter;
   const FitResult& fit = fitter.Fit(record, Depth::kFull);  // or another depth
   for (const ParameterEstimate& parameter : fit.parameters) {
     std::printf("%-20s %.10g %s\n", parameter.name.c_str(), parameter.value,

@@ -210,6 +210,39 @@ double NoiseWithoutPriors(std::span<const RecordView> records, const FitOptions&
   return fit.records.front().displacement_noise;
 }
 
+/// Fits once, with the slip force wherever the search finds it.
+FitResult FitOnce(std::span<const RecordView> records, Depth depth, const FitOptions& options) {
+  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
+  const std::shared_ptr<const loop::DrawnReadings> drawn =
+      options.preparation.drawn ? options.preparation.drawn : loop::DrawReadings(prepared);
+  LeaveOutBeyondLags(options, prepared);
+  ScaledRecords data = Scale(prepared, options);
+  AddColumns(options, prepared, data);
+  if (!options.priors.empty()) {
+    data.prior_noise = NoiseWithoutPriors(records, options) / data.response_unit();
+  }
+  RequireRecords(options, data);
+  MeasureBesideKnownForces(options, data, prepared);
+  RequireRigStifferThanLoop(options, prepared);
+
+  const Attempt attempt{options, depth, prepared, drawn.get(), data};
+  SolvedFit solved = SolveFit(attempt);
+  FitResult result = Assemble(attempt, solved);
+  if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return result;
+  result = Infer(attempt, std::move(solved), std::move(result));
+  if (depth < Depth::kFull) return result;
+  FitOptions others = options;
+  others.preparation.drawn = drawn;
+  result.law_choice = CompareLaws(records, others, data, result);
+  // An inadequate model reports a choice against it only: the other law may be the reason.
+  const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
+  if (result.law_choice && is_inadequate && !result.law_choice->prefers_alternative()) {
+    result.law_choice.reset();
+  }
+  Append(result.findings, FindOtherLaw(result.law_choice));
+  return result;
+}
+
 /// Cuts intervals at bounds that are given: what the model misses and rivals widened them by.
 void CutAtBounds(const FitOptions& options, FitResult& result) {
   for (ParameterEstimate& estimate : result.parameters) {
@@ -219,6 +252,32 @@ void CutAtBounds(const FitOptions& options, FitResult& result) {
     if (estimate.lower95) estimate.lower95 = std::clamp(*estimate.lower95, lower, upper);
     if (estimate.upper95) estimate.upper95 = std::clamp(*estimate.upper95, lower, upper);
   }
+}
+
+/// Fits, and once more where the slip force runs away from what was measured.
+FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& options) {
+  FitResult result = FitOnce(records, depth, options);
+  if (const std::optional<FitOptions> within = WithinMeasuredForce(result, options)) {
+    result = FitOnce(records, depth, *within);
+    // The largest force is known no better than the law follows it.
+    if (IsFitted(result) && result.parameters[kSlipForce].upper95) {
+      ParameterEstimate& slip_force = result.parameters[kSlipForce];
+      Include(slip_force,
+              {.lower = slip_force.value, .upper = slip_force.value + result.adequacy.misfit});
+    }
+  }
+  CutAtBounds(options, result);
+  return result;
+}
+
+/// True if the next fit may start at the last one's end: a single minimum, not at a bound.
+bool MayContinueFrom(const FitResult& result) {
+  return result.converged && TellsTheLaw(result) &&
+         std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
+           return estimate.is_at_bound() ||
+                  (estimate.name == "alpha" && estimate.status == ParameterStatus::kFixed &&
+                   estimate.value == 0);
+         });
 }
 
 }  // namespace
@@ -259,100 +318,22 @@ void Validate(const FitOptions& options) {
   }
 }
 
-struct Fitter::State {
-  explicit State(FitOptions given) : options(std::move(given)) { Validate(options); }
-
-  void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
-  /// Fits, and once more where the slip force runs away from what was measured.
-  void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
-    Fit(records, depth, given);
-    const std::optional<FitOptions> within = WithinMeasuredForce(result, given);
-    if (within) {
-      Fit(records, depth, *within);
-      // The largest force is known no better than the law follows it.
-      if (IsFitted(result) && result.parameters[kSlipForce].upper95) {
-        ParameterEstimate& slip_force = result.parameters[kSlipForce];
-        Include(slip_force,
-                {.lower = slip_force.value, .upper = slip_force.value + result.adequacy.misfit});
-      }
-    }
-    CutAtBounds(given, result);
-  }
-  void Continue(const RecordView& record, Depth depth);
-  [[nodiscard]] bool MayContinue() const;
-
-  FitOptions options;
-  FitResult result;
-};
-
-void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
-  loop::PreparedRecords prepared = loop::Prepare(records, given.preparation);
-  const std::shared_ptr<const loop::DrawnReadings> drawn =
-      given.preparation.drawn ? given.preparation.drawn : loop::DrawReadings(prepared);
-  LeaveOutBeyondLags(given, prepared);
-  ScaledRecords data = Scale(prepared, given);
-  AddColumns(given, prepared, data);
-  if (!given.priors.empty()) {
-    data.prior_noise = NoiseWithoutPriors(records, given) / data.response_unit();
-  }
-  RequireRecords(given, data);
-  MeasureBesideKnownForces(given, data, prepared);
-  RequireRigStifferThanLoop(given, prepared);
-
-  const Attempt attempt{given, depth, prepared, drawn.get(), data};
-  SolvedFit solved = SolveFit(attempt);
-  result = Assemble(attempt, solved);
-  if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
-  result = Infer(attempt, std::move(solved), std::move(result));
-  if (depth < Depth::kFull) return;
-  FitOptions others = given;
-  others.preparation.drawn = drawn;
-  result.law_choice = CompareLaws(records, others, data, result);
-  // An inadequate model reports a choice against it only: the other law may be the reason.
-  const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
-  if (result.law_choice && is_inadequate && !result.law_choice->prefers_alternative()) {
-    result.law_choice.reset();
-  }
-  Append(result.findings, FindOtherLaw(result.law_choice));
-}
-
-/// True if the next fit may start at the last one's end: a single minimum, not at a bound.
-bool Fitter::State::MayContinue() const {
-  return result.converged && TellsTheLaw(result) &&
-         std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
-           return estimate.is_at_bound() ||
-                  (estimate.name == "alpha" && estimate.status == ParameterStatus::kFixed &&
-                   estimate.value == 0);
-         });
-}
-
-void Fitter::State::Continue(const RecordView& record, Depth depth) {
-  if (MayContinue()) {
-    FitOptions continued = options;
-    StartFrom(result, continued);
-    const double last_rms = result.rms;
-    FitWithin({&record, 1}, depth, continued);
-    const double as_good = options.thresholds.larger_rms * last_rms;
-    if (result.converged && result.rms <= as_good && TellsTheLaw(result)) return;
-  }
-  FitWithin({&record, 1}, depth, options);
-}
-
-Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
-Fitter::Fitter(Fitter&&) noexcept = default;
-Fitter& Fitter::operator=(Fitter&&) noexcept = default;
-Fitter::~Fitter() = default;
-
-const FitOptions& Fitter::options() const { return state_->options; }
+Fitter::Fitter(FitOptions options) : options_(std::move(options)) { Validate(options_); }
 
 const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
-  state_->FitWithin(records, depth, state_->options);
-  return state_->result;
+  result_ = FitWithin(records, depth, options_);
+  return result_;
 }
 
 const FitResult& Fitter::Continue(const RecordView& record, Depth depth) {
-  state_->Continue(record, depth);
-  return state_->result;
+  if (MayContinueFrom(result_)) {
+    FitOptions continued = options_;
+    StartFrom(result_, continued);
+    const double as_good = options_.thresholds.larger_rms * result_.rms;
+    result_ = FitWithin({&record, 1}, depth, continued);
+    if (result_.converged && result_.rms <= as_good && TellsTheLaw(result_)) return result_;
+  }
+  return Fit(record, depth);
 }
 
 FitResult Fit(std::span<const loop::Record> records, const FitOptions& options, Depth depth) {

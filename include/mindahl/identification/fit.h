@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "mindahl/identification/fit_options.h"
@@ -23,9 +22,6 @@ class Fitter {
  public:
   /// @throws InvalidArgument for options that break a rule whatever the records are
   explicit Fitter(FitOptions options = {});
-  Fitter(Fitter&&) noexcept;
-  Fitter& operator=(Fitter&&) noexcept;
-  ~Fitter();
 
   /// @param records  [m], [N]; at least as many samples that count as free parameters
   /// @returns valid until the next call. A fit that fails is a result with converged = false and
@@ -42,11 +38,11 @@ class Fitter {
   /// law, and if this fit does not converge or leaves 1.5 times the residuals.
   const FitResult& Continue(const loop::RecordView& record, Depth depth = Depth::kFull);
 
-  [[nodiscard]] const FitOptions& options() const;
+  [[nodiscard]] const FitOptions& options() const { return options_; }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  FitOptions options_;
+  FitResult result_;
 };
 
 /// Fits all the records together.
