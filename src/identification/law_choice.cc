@@ -160,8 +160,10 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   };
   double delta = criterion(*other) - criterion(fit);
   // If the laws are one curve, a virgin start counts only if it is better.
-  const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
-  if (is_one_curve && (delta > 0 || is_undecided())) return choice;
+  const auto is_undecided = [&](double difference) {
+    return std::abs(difference) < options.thresholds.undecided;
+  };
+  if (is_one_curve && (delta > 0 || is_undecided(delta))) return choice;
   choice.law = other->law;
   // Under cycles of one amplitude, the two laws differ only in a transient. A drift of the force or
   // of the slip force resembles it: if the residuals show one, the other law must also fit better
@@ -169,7 +171,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const auto drift = std::ranges::find_if(fit.adequacy.causes, [](const Cause& cause) {
     return cause.term == "force_drift" || cause.term == "slip_trend";
   });
-  if (drift != fit.adequacy.causes.end() && !is_undecided() && delta < 0) {
+  if (drift != fit.adequacy.causes.end() && !is_undecided(delta) && delta < 0) {
     FitOptions with = options;
     FitOptions other_with = others;
     StartFrom(fit, with);
@@ -185,7 +187,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   // the first branch of an excerpt is no evidence for Dahl's, unless a whole stroke follows it and
   // the loop is short of slip, where no such reversals give Masing's contact the loop of Dahl's,
   // and Dahl's leaves but noise.
-  const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
+  const bool is_for_dahl = !is_undecided(delta) && (delta > 0) != is_masing;
   const std::vector<SampleRange> past =
       is_open && is_for_dahl ? UnknownPast(records, data, fit, is_masing ? *other : fit)
                              : std::vector<SampleRange>{};
@@ -206,7 +208,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     delta = criterion(*other_without) - criterion(*without);
   }
   choice.delta_aicc = delta;
-  choice.decided = !is_undecided();
+  choice.decided = !is_undecided(delta);
   if (choice.decided) choice.preferred = delta > 0 ? fit.model : choice.alternative;
   return choice;
 }
