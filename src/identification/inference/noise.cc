@@ -95,6 +95,42 @@ Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) 
   return best;
 }
 
+constexpr int kParts = 20;  // of a stroke's length
+using Parts = Eigen::Array<double, kParts, 1>;
+
+/// Means m of the residual in each part of the strokes of one direction.
+struct Side {
+  Parts strokes = Parts::Zero();  // that have samples in a part
+  Parts sums = Parts::Zero();     // of their means
+  Parts squares = Parts::Zero();
+};
+
+/// Returns the mean square of what repeats in every stroke, 0 where the F test takes it for chance;
+/// empty where no part has samples of two strokes, or all means are 0.
+std::optional<double> RepeatingSquare(std::span<const Side> sides, const Thresholds& thresholds) {
+  double between = 0.0;  // Σ n·m̄², of parts
+  double within = 0.0;   // Σ (m − m̄)², of strokes within parts
+  double parts = 0.0;
+  double degrees_within = 0.0;
+  double repeating = 0.0;  // Σ (m̄² − s²/n)
+  for (const Side& side : sides) {
+    const Parts is_used = (side.strokes > 1).cast<double>();
+    const Parts n = side.strokes.max(2);
+    const Parts mean = side.sums / n;
+    const Parts scatter = is_used * (side.squares - n * mean.square()).max(0);
+    between += (is_used * n * mean.square()).sum();
+    within += scatter.sum();
+    degrees_within += (is_used * (n - 1)).sum();
+    repeating += (is_used * mean.square() - scatter / (n - 1) / n).sum();
+    parts += is_used.sum();
+  }
+  if (parts == 0 || !(between > 0)) return std::nullopt;
+  constexpr double kRounding = 1e-15;  // of what repeats to the last digit
+  const double ratio = between / parts / (std::max(within, kRounding * between) / degrees_within);
+  const double chance = PValueOfF(ratio, parts, degrees_within);
+  return chance <= thresholds.rare_chance ? repeating / parts : 0.0;
+}
+
 }  // namespace
 
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
@@ -137,13 +173,6 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
 
 ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
                                     const Thresholds& thresholds) {
-  constexpr int kParts = 20;
-  using Parts = Eigen::Array<double, kParts, 1>;
-  struct Side {
-    Parts strokes = Parts::Zero();  // that have samples in a part
-    Parts sums = Parts::Zero();     // of their means
-    Parts squares = Parts::Zero();
-  };
   const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
   std::array<Side, 2> sides;
@@ -173,32 +202,13 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     squares += own_squares;
     samples += counts.sum();
   }
-  double between = 0.0;  // Σ n·m̄², of parts
-  double within = 0.0;   // Σ (m − m̄)², of strokes within parts
-  double parts = 0.0;
-  double degrees_within = 0.0;
-  double systematic = 0.0;  // Σ (m̄² − s²/n)
-  for (const Side& side : sides) {
-    const Parts is_used = (side.strokes > 1).cast<double>();
-    const Parts n = side.strokes.max(2);
-    const Parts mean = side.sums / n;
-    const Parts scatter = is_used * (side.squares - n * mean.square()).max(0);
-    between += (is_used * n * mean.square()).sum();
-    within += scatter.sum();
-    degrees_within += (is_used * (n - 1)).sum();
-    systematic += (is_used * mean.square() - scatter / (n - 1) / n).sum();
-    parts += is_used.sum();
-  }
+  const std::optional<double> repeating = RepeatingSquare(sides, thresholds);
+  if (!repeating) return structure;
   const double mean_square = squares / samples;
-  if (parts == 0 || !(between > 0)) return structure;
+  structure.repeatable_share = std::clamp(*repeating / mean_square, 0.0, 1.0);
   double all_squares = 0.0;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.counts[i] != 0) all_squares += residual[i] * residual[i];
-  }
-  constexpr double kRounding = 1e-15;  // of what repeats to the last digit
-  const double ratio = between / parts / (std::max(within, kRounding * between) / degrees_within);
-  if (PValueOfF(ratio, parts, degrees_within) <= thresholds.rare_chance) {
-    structure.repeatable_share = std::clamp(systematic / parts / mean_square, 0.0, 1.0);
   }
   structure.noise_share = (1 - structure.repeatable_share) * mean_square *
                           static_cast<double>(CountedSamplesOf(record)) / all_squares;
