@@ -6,7 +6,6 @@
 #include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
-#include "identification/solve/solver.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "identification/solve/search.h"
+
 namespace mindahl::identification {
 namespace {
 

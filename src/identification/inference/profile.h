@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "identification/inference/estimates.h"
-#include "identification/solve/search.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 
