@@ -123,9 +123,9 @@ struct Thresholds {
   /// [of half its range] A record without reversals whose first force is as small began at both
   /// zeros. Noise of the first reading is less: a force that was cut off is more.
   double starts_without_force = 0.1;
-  /// [sums of squares] An initial state, or a start, that fits the thinned record worse by this
-  /// factor is given up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one
-  /// parameter by which states differ, however few samples the whole record adds.
+  /// [sums of squares] An initial state that fits the thinned record worse by this factor is given
+  /// up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one parameter by which
+  /// states differ, however few samples the whole record adds.
   double hopeless = 4.0;
   /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
   /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.

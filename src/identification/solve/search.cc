@@ -296,11 +296,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
   std::vector<Look> starts;
   for (Look& look : looks) {
-    const double least = looks.front().cost;
-    if (!bent && starts.size() >= most &&
-        !(starts.size() < 2 && look.cost < options.thresholds.hopeless * least)) {
-      break;
-    }
+    if (!bent && starts.size() >= most) break;
     for (const std::size_t p : thin.parameters.free()) {
       const Parameter& parameter = thin.parameters[p];
       if (parameter.started_by_user) look.theta[p] = parameter.theta;

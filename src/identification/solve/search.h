@@ -24,8 +24,8 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// Finds the candidate's starting points, best first, from the data or as the options give them.
 ///
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
-/// linear eliminated (docs/theory.md §12). The best of each α, or where α is held of each third of
-/// the plane, goes on to the minimum of the thinned record.
+/// linear eliminated (docs/theory.md §12). The best look goes on to the minimum of the thinned
+/// record; beside terms that of each α, or where α is held of each third of the plane.
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options);
 
