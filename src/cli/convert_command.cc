@@ -26,6 +26,7 @@ struct ConvertOptions {
 /// Reads what `mindahl fit --json` wrote, or fits a record.
 Json ReadFit(const std::string& file, const io::RecordColumns& columns) {
   std::ifstream stream(file);
+  if (!stream) Refuse("{}: cannot be read", file);
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
   if (fit.is_discarded() && !file.ends_with(".json")) {
     const FitRequest request{.files = {file}, .columns = columns};
