@@ -25,7 +25,7 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 ///
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
 /// linear eliminated (docs/theory.md §12). The best look goes on to the minimum of the thinned
-/// record; beside terms that of each α, or where α is held of each third of the plane.
+/// record; with terms that of each α, or where α is held of each third of the plane.
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options);
 
