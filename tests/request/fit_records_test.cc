@@ -240,15 +240,21 @@ TEST(Law, OfAFitWithChosenTermsIsNotComparedWithTheOther) {
   EXPECT_EQ(fit.FindFinding("other_law"), nullptr);
 }
 
-TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
+/// Cycles of a contact from rest with a force of the velocity [N], the largest of which is given.
+io::RecordFile ViscousFile(const char* model, double alpha, double amplitude, double viscous) {
   Generator generator(4);
   io::RecordFile file =
-      SineFile("mindlin-dahl", {4e7, 1.0 / 3, 40.0}, 4e-6, testing::Sine(3, 200), 0.1, generator);
+      SineFile(model, {4e7, alpha, 40.0}, amplitude, testing::Sine(3, 200), 0.1, generator);
   for (std::size_t i = 0; i < file.record.size(); ++i) {
     const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
-    file.record.force[i] += 2 * std::cos(phase);
+    file.record.force[i] += viscous * std::cos(phase);
     file.record.time.push_back(0.005 * static_cast<double>(i));
   }
+  return file;
+}
+
+TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
+  const io::RecordFile file = ViscousFile("mindlin-dahl", 1.0 / 3, 4e-6, 2.0);
   const report::Report made = FitRecords({}, {file});
   EXPECT_GT(*made.fit.Find("slip_force")->lower95, 40.3) << "with the force of the velocity";
   ASSERT_TRUE(made.next);
@@ -256,36 +262,25 @@ TEST(NextStep, IsAForceOfTheVelocityThatTheIntervalOfTcHasInIt) {
               AnyOf(StartsWith("--terms viscous"), StartsWith("--terms speed_exponent")));
 }
 
-/// Dahl's own law from rest, with a force of the velocity.
-io::RecordFile ViscousFileOfDahl() {
-  Generator generator(4);
-  io::RecordFile file =
-      SineFile("dahl", {4e7, 1.0, 40.0}, 6e-6, testing::Sine(4, 200), 0.1, generator);
-  for (std::size_t i = 0; i < file.record.size(); ++i) {
-    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
-    file.record.force[i] += 6 * std::cos(phase);
-    file.record.time.push_back(0.005 * static_cast<double>(i));
-  }
-  return file;
-}
-
 TEST(Law, IsDahlsOfARecordThatBeginsUnderAForceOfATerm) {
   FitRequest request;
   request.terms = {"viscous"};
-  const identification::FitResult fit = FitRecords(request, {ViscousFileOfDahl()}).fit;
+  const identification::FitResult fit =
+      FitRecords(request, {ViscousFile("dahl", 1.0, 6e-6, 6.0)}).fit;
   EXPECT_EQ(fit.model->name, "dahl");
   EXPECT_EQ(fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
   EXPECT_TRUE(testing::Covers(*fit.Find("sigma"), 4e7));
 }
 
 TEST(NextStep, MayDecideTheLaw) {
-  const report::Report made = FitRecords({}, {ViscousFileOfDahl()});
+  const report::Report made = FitRecords({}, {ViscousFile("dahl", 1.0, 6e-6, 6.0)});
   EXPECT_EQ(made.fit.model->name, "mindlin-dahl");
   ASSERT_TRUE(made.next);
   EXPECT_EQ(made.next->options, "--terms viscous");
   FitRequest followed;
   followed.terms = {"viscous"};
-  const identification::FitResult fit = FitRecords(followed, {ViscousFileOfDahl()}).fit;
+  const identification::FitResult fit =
+      FitRecords(followed, {ViscousFile("dahl", 1.0, 6e-6, 6.0)}).fit;
   EXPECT_DOUBLE_EQ(made.next->misfit_after, *fit.adequacy.misfit_over_half_gap);
 }
 
@@ -306,14 +301,7 @@ TEST(NextStep, IsNoneBesideAValueThatTheRecordContradictsOrWithoutALoop) {
 }
 
 TEST(NextStep, GoesOnFromTermsThatAreNamed) {
-  Generator generator(4);
-  io::RecordFile file =
-      SineFile("mindlin-dahl", {4e7, 1.0 / 3, 40.0}, 4e-6, testing::Sine(3, 200), 0.1, generator);
-  for (std::size_t i = 0; i < file.record.size(); ++i) {
-    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 200;
-    file.record.force[i] += 2 * std::cos(phase);
-    file.record.time.push_back(0.005 * static_cast<double>(i));
-  }
+  const io::RecordFile file = ViscousFile("mindlin-dahl", 1.0 / 3, 4e-6, 2.0);
   FitRequest request;
   request.terms = {"lag"};
   const report::Report made = FitRecords(request, {file});

@@ -241,7 +241,7 @@ ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResul
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   if (result.depth >= Depth::kIntervals && half_gap &&
       result.adequacy.verdict != AdequacyVerdict::kAdequate) {
-    // What the model misses may be a force in addition to the contact's, which the gap alone has not in it.
+    // What the model misses may be a force in addition to the contact's. The gap does not have it.
     const RecordFit& widest = result.WidestRecord();
     const double scatter = ScatterOfCycles(widest.facts, result.confidence) / widest.load_ratio;
     SetInterval(slip_force, {.lower = std::max(*half_gap - scatter, 0.0)});
