@@ -138,6 +138,12 @@ struct Alternative {
   double rms = 0.0;             // with it, to first order
 };
 
+/// Judges the parameters after intervals were extended.
+void JudgeAgain(const Thresholds& thresholds, FitResult& fit) {
+  Append(fit.findings, FindWideIntervals(fit, thresholds));
+  Judge(fit.parameters, fit.findings);
+}
+
 /// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
 /// slides has carried.
 void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
@@ -157,8 +163,7 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
       Include(estimate, {.lower = value, .upper = value});
     }
   }
-  Append(fit.findings, FindWideIntervals(fit, thresholds));
-  Judge(fit.parameters, fit.findings);
+  JudgeAgain(thresholds, fit);
 }
 
 /// Adds terms to a law: a few one after the other, or all common ones.
@@ -486,8 +491,7 @@ void IncludeFit(const FitResult& with_term, const Thresholds& thresholds, FitRes
     Include(estimate, {.lower = std::min(other.value, other.lower95.value_or(other.value)),
                        .upper = std::max(other.value, other.upper95.value_or(other.value))});
   }
-  Append(fit.findings, FindWideIntervals(fit, thresholds));
-  Judge(fit.parameters, fit.findings);
+  JudgeAgain(thresholds, fit);
 }
 
 }  // namespace mindahl::identification

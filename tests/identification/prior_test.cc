@@ -103,8 +103,8 @@ TEST(Prior, OfARigThatTheRecordDoesNotHaveIsContradicted) {
   EXPECT_GT(fit.Find("rig_stiffness")->value, 1.3 * kLaw.tangential_stiffness);
 }
 
-/// What a prior moves a parameter by is a misfit, as of a parameter that is held; however sharp the
-/// prior is, its distance is in proportion to both uncertainties.
+/// A prior that shifts a parameter leaves a misfit, as a parameter does that is held at that value.
+/// The distance of the prior counts both uncertainties, however small that of the prior is.
 TEST(Prior, ThatTheRecordContradictsIsAMisfit) {
   constexpr double kOff = 0.027;
   const FitResult without = FitOne(TimedLoop(), Options());

@@ -177,7 +177,7 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
 /// @param uncertainty  of that
 double DistanceOfOwn(const Problem& problem, Eigen::VectorXd own, const Eigen::MatrixXd& others,
                      const Eigen::VectorXd& residual, double off, double uncertainty) {
-  // What no other parameter explains.
+  // The columns of the other parameters are projected out.
   if (others.cols() > 0) own -= others * others.colPivHouseholderQr().solve(own);
   const double information = own.squaredNorm();
   const double step = -own.dot(residual) / information;
@@ -191,6 +191,8 @@ double DistanceOfOwn(const Problem& problem, Eigen::VectorXd own, const Eigen::M
 /// describe the records, also those that the user holds elsewhere.
 std::vector<Finding> FindContradicted(const Estimates& fitted, const FitOptions& options,
                                       const FitResult& result) {
+  const bool is_described = result.adequacy.verdict == AdequacyVerdict::kAdequate;
+  if (options.priors.empty() && (options.fixed.empty() || is_described)) return {};
   const Problem& problem = fitted.problem();
   const std::vector<double>& theta = fitted.solution().theta;
   const std::vector<std::size_t>& free = problem.parameters.free();
@@ -200,15 +202,15 @@ std::vector<Finding> FindContradicted(const Estimates& fitted, const FitOptions&
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
     const std::string name = problem.parameters.NameOf(p);
-    const bool is_held = parameter.fixed && options.fixed.contains(name) &&
-                         result.adequacy.verdict != AdequacyVerdict::kAdequate;
+    const bool is_held = parameter.fixed && !is_described && options.fixed.contains(name);
+    if (!is_held && (parameter.fixed || !parameter.has_prior())) continue;
     Eigen::MatrixXd others = at.jacobian;
     double distance = 0.0;
     if (is_held) {
       Eigen::VectorXd own = LinearizeAt(problem, theta, {&p, 1}).jacobian.col(0);
       own.conservativeResizeLike(Eigen::VectorXd::Zero(others.rows()));
       distance = DistanceOfOwn(problem, own, others, at.residual, 0.0, 0.0);
-    } else if (!parameter.fixed && parameter.has_prior()) {
+    } else {
       const auto place = std::ranges::find(free, p) - free.begin();
       Eigen::VectorXd own = others.col(place);
       own[++row] = 0.0;
@@ -329,8 +331,8 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
-  // What is known does not depend on the confidence that is asked for, nor does what a model
-  // misses.
+  // The verdict is that of a 95 % interval, whatever confidence is requested. The model discrepancy
+  // does not scale with the confidence.
   const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
                            StudentQuantile(result.degrees_of_freedom, result.confidence);
   const bool hides = HidesInSpring(result);

@@ -234,19 +234,19 @@ ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResul
   ParameterEstimate slip_force = result.parameters[kSlipForce];
   const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
                        slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
-  // A fitted force in addition to the contact's may be a part of T*.
-  const bool has_added_force = std::ranges::any_of(
-      fitted.free(), [&](std::size_t p) { return fitted[p].term->adds_force(); });
   if (!is_open) return slip_force;
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   if (result.depth >= Depth::kIntervals && half_gap &&
       result.adequacy.verdict != AdequacyVerdict::kAdequate) {
-    // What the model misses may be a force in addition to the contact's. The gap does not have it.
+    // A force that is not modelled may be a part of T*, but not of the half gap.
     const RecordFit& widest = result.WidestRecord();
     const double scatter = ScatterOfCycles(widest.facts, result.confidence) / widest.load_ratio;
     SetInterval(slip_force, {.lower = std::max(*half_gap - scatter, 0.0)});
     return slip_force;
   }
+  // A fitted force in addition to the contact's may be a part of T*.
+  const bool has_added_force = std::ranges::any_of(
+      fitted.free(), [&](std::size_t p) { return fitted[p].term->adds_force(); });
   if (has_added_force) return slip_force;
   const bool is_forced = result.response == loop::Channel::kDisplacement;
   // Half the distance between the medians of a few ends is known to about half its white noise.
