@@ -182,14 +182,16 @@ class Selection {
     base_ = law_ = FitWith({});
   }
 
-  TermSelection Run(FitResult law) {
+  /// @param most  to be added
+  TermSelection Run(FitResult law, MostTerms most) {
     TermSelection result;
     result.options = base_.options;
     while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
     }
     FitResult last;
     // Short of slip the law itself has the forms of several: together they would take its place.
-    if (!IsNearlyWhite(base_.fit, Limits()) && Slides()) last = FitCommon();
+    const bool may_be_common = most == MostTerms::kCommon && Slides();
+    if (may_be_common && !IsNearlyWhite(base_.fit, Limits())) last = FitCommon();
     if (!IsFitted(last) && !added_.empty()) last = FitLast(base_);
     if (IsFitted(last)) {
       // One term that leaves but noise rules out what leaves much more.
@@ -469,12 +471,12 @@ class Selection {
 }  // namespace
 
 TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
-                          FitResult fit) {
+                          FitResult fit, MostTerms most) {
   const bool is_described = fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (!IsFitted(fit) || is_described || options.response() != loop::Channel::kForce) {
     return {.considered = {}, .added = {}, .options = options, .fit = std::move(fit)};
   }
-  return Selection(records, options, fit).Run(std::move(fit));
+  return Selection(records, options, fit).Run(std::move(fit), most);
 }
 
 std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const FitOptions& options,

@@ -116,15 +116,18 @@ void NoteOtherLoads(const FitOptions& options, report::ReportInput& input) {
   }
 }
 
+/// True if the other law was fitted too, and is preferred.
+bool PrefersOther(const FitResult& fit) {
+  return fit.law_choice && fit.law_choice->prefers_alternative();
+}
+
 /// Takes back a preference for the law that the program did not choose.
-/// @returns true where there was one
-bool WithdrawPreference(FitResult& fit) {
-  if (!fit.law_choice || !fit.law_choice->prefers_alternative()) return false;
+void WithdrawPreference(FitResult& fit) {
+  if (!PrefersOther(fit)) return;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
   std::erase_if(fit.findings,
                 [](const identification::Finding& finding) { return finding.code == "other_law"; });
-  return true;
 }
 
 /// Fits by the model of the options or, where that is to be chosen, by Masing's law or, where the
@@ -134,8 +137,7 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
   TermSelection asked;
   asked.options = options;
   asked.fit = identification::Fit(records, options);
-  const auto& choice = asked.fit.law_choice;
-  if (chooses_law && choice && choice->prefers_alternative()) {
+  if (chooses_law && PrefersOther(asked.fit)) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     FitResult other = identification::Fit(records, of_other);
@@ -171,8 +173,20 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
   if (!request.chooses_terms) return asked;
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   asked = identification::SelectTerms(views, asked.options, std::move(asked.fit));
-  // The law was chosen before the terms: of the other one with them nothing is said.
-  if (chooses_law && WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
+  // A force in addition to the contact's may have decided the law: it is Dahl's own where this is
+  // adequate with one or two terms, and Masing's with any is not, or less likely.
+  const auto is_adequate = [](const TermSelection& of) {
+    return of.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
+  };
+  const auto* const dahl = models::FindFrictionModel("dahl");
+  if (chooses_law && asked.options.model != dahl &&
+      (!is_adequate(asked) || PrefersOther(asked.fit))) {
+    options.model = dahl;
+    TermSelection of_dahl = identification::SelectTerms(
+        views, options, identification::Fit(records, options), identification::MostTerms::kTwo);
+    if (is_adequate(of_dahl)) asked = std::move(of_dahl);
+  }
+  if (chooses_law) WithdrawPreference(asked.fit);
   return asked;
 }
 
@@ -296,8 +310,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
-  const bool is_other_law = fit.law_choice && fit.law_choice->prefers_alternative();
-  if (!fit.converged || !(before > kLeastMisfit) || is_other_law ||
+  if (!fit.converged || !(before > kLeastMisfit) || PrefersOther(fit) ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
       fit.FindFinding("prior_contradicted") != nullptr ||

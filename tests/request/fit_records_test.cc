@@ -227,19 +227,6 @@ TEST(Law, IsMasingsAndNotPreferredWhereEachFitsBetterThanTheSolutionOfTheOther) 
   EXPECT_EQ(fit.FindFinding("other_law", "better"), nullptr);
 }
 
-TEST(Law, OfAFitWithChosenTermsIsNotComparedWithTheOther) {
-  Generator generator(4);
-  io::RecordFile file =
-      SineFile("dahl", {4e7, 1.0, 40.0}, 2.1e-6, testing::Sine(4, 120), 0.1, generator);
-  std::vector<double>& force = file.record.force;
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += 0.02 * static_cast<double>(i);
-  FitRequest request;
-  request.chooses_terms = true;
-  const identification::FitResult fit = FitRecords(request, {file}).fit;
-  EXPECT_FALSE(fit.law_choice);
-  EXPECT_EQ(fit.FindFinding("other_law"), nullptr);
-}
-
 /// Cycles of a contact from rest with a force of the velocity [N], the largest of which is given.
 io::RecordFile ViscousFile(const char* model, double alpha, double amplitude, double viscous) {
   Generator generator(4);
@@ -270,6 +257,17 @@ TEST(Law, IsDahlsOfARecordThatBeginsUnderAForceOfATerm) {
   EXPECT_EQ(fit.model->name, "dahl");
   EXPECT_EQ(fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
   EXPECT_TRUE(testing::Covers(*fit.Find("sigma"), 4e7));
+}
+
+TEST(Law, IsDahlsWhereItDescribesTheRecordWithTermsThatAreChosen) {
+  FitRequest request;
+  request.chooses_terms = true;
+  const report::Report made = FitRecords(request, {ViscousFile("dahl", 1.0, 6e-6, 6.0)});
+  EXPECT_EQ(made.fit.model->name, "dahl");
+  ASSERT_TRUE(made.terms);
+  EXPECT_THAT(made.terms->added, ElementsAre("viscous"));
+  EXPECT_EQ(made.fit.adequacy.verdict, identification::AdequacyVerdict::kAdequate);
+  EXPECT_TRUE(testing::Covers(*made.fit.Find("sigma"), 4e7));
 }
 
 TEST(NextStep, MayDecideTheLaw) {

@@ -22,6 +22,11 @@ struct ConsideredTerm {
   std::string_view obstacle;
 };
 
+enum class MostTerms {
+  kTwo,     ///< one after the other
+  kCommon,  ///< or all that measured loops have in common
+};
+
 struct TermSelection {
   std::vector<ConsideredTerm>
       considered;  ///< those added first, in their order; then by their gain
@@ -31,16 +36,15 @@ struct TermSelection {
 };
 
 /// Fits a record with the terms that it requires (docs/identification.md): none where the law
-/// describes it adequately; else up to two, one after the other, or all that measured loops have in
-/// common. Candidates are scored by one Gauss–Newton step from the present solution (term_scores.h)
-/// and added by the gain of their fits.
+/// describes it adequately; else as many as `most` says. Candidates are scored by one Gauss–Newton
+/// step from the present solution (term_scores.h) and added by the gain of their fits.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
 /// @param fit      of the records with the options, at Depth::kFull
 /// @throws InvalidArgument as Fit does
 /// Deterministic. Nothing is selected in a fit of the displacement.
 TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
-                          FitResult fit);
+                          FitResult fit, MostTerms most = MostTerms::kCommon);
 
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
 /// that score best as SelectTerms() scores its candidates, a column that follows the force before
