@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/extremes.h"
@@ -28,10 +29,11 @@ std::vector<double> StepsOf(std::span<const double> values) {
   return steps;
 }
 
-/// True if most neighbours differ by whole steps or not at all, and a rest between two steps has
-/// not always as many samples. An evenly sampled drive also gives whole steps; it is told from an
-/// encoder by its constant number of samples per step.
+/// True if most neighbours differ by whole steps or not at all, and by several numbers of steps, or
+/// with rests between steps that have not always as many samples. An evenly sampled drive of one
+/// speed or a few also gives whole steps, always as many at a speed.
 bool IsQuantised(std::span<const double> displacement, double step, bool rests_at_turns) {
+  constexpr std::size_t kSpeeds = 4;
   constexpr double kWhole = 1e-6;
   constexpr double kMostBroken = 0.01;  // of the pairs
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
@@ -43,6 +45,7 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
   std::size_t first_rest = 0;                                                // 0 before it
   bool rests_differ = false;
   double last = 0.0;  // steps of the last motion
+  std::set<double> speeds;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = (displacement[i] - displacement[i - 1]) / step;
     const double nearest = std::round(steps);
@@ -57,8 +60,9 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
     }
     last = nearest;
     rest = 1;
+    if (speeds.size() < kSpeeds) speeds.insert(std::abs(nearest));
   }
-  return rests_differ;
+  return rests_differ || speeds.size() == kSpeeds;
 }
 
 /// Windows that are tried, each about √2 times the last.

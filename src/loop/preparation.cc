@@ -30,7 +30,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
   // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
-  constexpr double kCoarse = 1e-3;
+  constexpr double kCoarse = 2e-4;
   const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
   return prepared.gate.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
 }

@@ -147,6 +147,35 @@ TEST(DisplacementNoise, IntervalsCoverTheTruthWhereAnEncoderMakesIt) {
               Virgin()));
 }
 
+/// Cycles that the samples are in step with, whose amplitude is a number of counts or a little
+/// more.
+Record CountedInStep(double amplitude, double counts, std::uint64_t seed) {
+  Generator generator(seed);
+  Record record = testing::LoopOf(kLaw, Cycling(Wave::kSine, amplitude, 4.0, 200));
+  record.displacement = testing::Quantised(record.displacement, amplitude / counts);
+  return WithNoise(record, 0.0, generator, 0.002 * kLaw.slip_force);
+}
+
+TEST(DisplacementNoise, OfAnEncoderIsTheSameInEveryCycleAndInTheIntervals) {
+  constexpr std::uint64_t kManyLoops = 12;
+  std::size_t missed = 0;
+  for (std::uint64_t seed = 1; seed <= kManyLoops; ++seed) {
+    const double amplitude = (0.5 + 0.15 * static_cast<double>(seed)) * kReach;
+    const FitResult fit = FitOne(CountedInStep(amplitude, 40.0, seed));
+    missed += Covers(*fit.Find("sigma"), kLaw.tangential_stiffness) ? 0 : 1;
+    missed += Covers(*fit.Find("alpha"), kLaw.shape_exponent) ? 0 : 1;
+  }
+  // More than four of 24 intervals of 95 % miss the truth with a probability of 1 in 180.
+  EXPECT_LE(missed, 4U);
+}
+
+TEST(DisplacementNoise, OfAFineEncoderIsNoMisfit) {
+  for (const double counts : {800.3, 1500.7, 4000.2}) {
+    const FitResult fit = FitOne(CountedInStep(1.5 * kReach, counts, 3));
+    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << counts;
+  }
+}
+
 TEST(DisplacementNoise, IsNoneInACleanRecord) {
   const FitResult fit = FitOne(Clean(), Virgin());
   EXPECT_EQ(fit.records[0].displacement_noise, 0.0);

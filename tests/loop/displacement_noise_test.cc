@@ -56,6 +56,8 @@ TEST(EncoderStep, IsFoundWhereADriveOfAnyShapeIsCounted) {
   EXPECT_NEAR(EncoderStep(Quantised(Sine(3, 200), kStep)), kStep, kRounding);
   EXPECT_NEAR(EncoderStep(Quantised(Sine(3, 5000), kStep)), kStep, kRounding);
   EXPECT_NEAR(EncoderStep(Quantised(Triangle(3, 200), kStep)), kStep, kRounding);
+  constexpr double kFine = 0.0013;  // several counts between samples, no rests within a stroke
+  EXPECT_NEAR(EncoderStep(Quantised(Sine(3, 200), kFine)), kFine, kRounding);
 }
 
 TEST(EncoderStep, IsZeroForADriveThatRunsEvenlyOrFromRestToRest) {

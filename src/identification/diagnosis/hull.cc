@@ -87,15 +87,18 @@ void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {
   for (const loop::PreparedRecord& record : records.records) {
     step = std::max(step, loop::EncoderStep(record.record.force, /*rests_at_turns=*/true));
   }
-  if (!(result.rms < step / 2)) return;
   constexpr double kOfShape = 5.0;
-  const double share = step / 2 / result.PeakForce();
-  for (const std::size_t p : {kStiffness, kSlipForce, kShape}) {
+  const double of_force = result.rms < step / 2 ? step / 2 / result.PeakForce() : 0.0;
+  const double of_stroke = result.EncoderStep() / result.WidestRecord().facts.amplitude;
+  const auto cover = [&](std::size_t p, double half) {
     ParameterEstimate& estimate = result.parameters[p];
-    const double half = p == kShape ? kOfShape * share : share * estimate.value;
+    if (!(half > 0)) return;
     Include(estimate,
             {.lower = std::max(estimate.value - half, 0.0), .upper = estimate.value + half});
-  }
+  };
+  cover(kStiffness, std::max(of_force, of_stroke) * result.law.tangential_stiffness);
+  cover(kShape, std::max(kOfShape * of_force, of_stroke));
+  cover(kSlipForce, of_force * result.law.slip_force);
 }
 
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
