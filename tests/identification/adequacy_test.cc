@@ -46,6 +46,23 @@ TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
   EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
+/// A slip force that runs in within two of ten cycles. From one sample to the next the noise hides
+/// that what the law misses goes on, and few stages of the record are like each other.
+TEST(Adequacy, OfAContactThatRunsInIsDoubtedWhateverTheNoise) {
+  const History displacement = Cycling(Wave::kSine, kReach, 10, 300);
+  const std::vector<double> steady = Respond(Model("mindlin-dahl"), kLaw, displacement);
+  for (const double noise : {0.003, 0.0065, 0.01}) {
+    Generator generator(1);
+    std::vector<double> force = steady;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] *= 1 - 0.2 * std::exp(-static_cast<double>(i) / 600);
+      force[i] += noise * kLaw.slip_force * Normal(generator);
+    }
+    EXPECT_NE(Fitted(MakeRecord(displacement, force)).adequacy.verdict, AdequacyVerdict::kAdequate)
+        << noise;
+  }
+}
+
 /// Two tests of forces 1 : 1.3 in one file: what grows with time makes most of the residuals.
 TEST(Adequacy, OfTwoTestsInOneFileIsDoubted) {
   const History displacement = Cycling(Wave::kSine, kReach, 2, 100);

@@ -92,6 +92,15 @@ bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
   return AreUnlikeNoise(result, thresholds);
 }
 
+/// Residuals that are white but for what they carry over to the next stroke.
+bool IsCarriedOver(const Thresholds& thresholds, double correlation) {
+  FitResult result = Made();
+  result.residuals.durbin_watson = 2.0;
+  result.records[0].structure.carried_over = correlation;
+  result.residuals.rms = 0.2 * result.PeakForce();
+  return AreUnlikeNoise(result, thresholds);
+}
+
 /// Whether residuals of such a chance are doubted.
 bool IsDoubted(const Thresholds& thresholds, double chance) {
   const Stages stages(LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 1.0, 40)));
@@ -224,6 +233,10 @@ const std::vector<Row>& Cases() {
        }},
       {&Thresholds::noise_memory,
        [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},
+      {&Thresholds::carried_over,
+       [](const Thresholds& t) {
+         return IsCarriedOver(t, kAbove * 0.3) && !IsCarriedOver(t, kBelow * 0.3);
+       }},
       {&Thresholds::poor_misfit,
        [](const Thresholds& t) {
          return IsSlow(t, 1.0, kAbove * 0.02) && !IsSlow(t, 1.0, kBelow * 0.02);

@@ -101,6 +101,10 @@ struct Thresholds {
   /// Within half a stroke the force passes through the whole law: noise of that length cannot be
   /// distinguished from a misfit.
   double noise_memory = 0.5;
+  /// [correlation] A poor misfit that correlates more from one stroke to the next of its direction
+  /// is not taken for noise. Noise of so long a memory cannot be distinguished from a contact that
+  /// changes.
+  double carried_over = 0.3;
   /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
   /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
   double undecided = 10.0;

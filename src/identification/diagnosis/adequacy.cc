@@ -107,6 +107,10 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   const bool is_small =
       result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
   if (is_small) return false;
+  const bool is_carried_over = std::ranges::any_of(result.records, [&](const RecordFit& record) {
+    return record.structure.carried_over > thresholds.carried_over;
+  });
+  if (is_carried_over) return true;
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   const double forgotten = -std::log(correlation);

@@ -54,8 +54,9 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
 /// adequate, and where noise alone does not often make what the terms explain.
 bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds);
 
-/// True if residuals are a poor misfit and correlate, ρ = 1 − DW/2 from one sample to the next, for
-/// −1/ln ρ samples, longer than noise_memory: as whatever changes slowly does.
+/// True if residuals are a poor misfit and change slowly: from one stroke to the next of a
+/// direction they correlate by more than carried_over, or by ρ = 1 − DW/2 from one sample to the
+/// next for −1/ln ρ samples, longer than noise_memory.
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 
 /// Sets `misfit`, `misfit_over_half_gap` and `use` of the adequacy. Without a half gap the use is

@@ -100,6 +100,7 @@ using Parts = Eigen::Array<double, kParts, 1>;
 
 /// Means m of the residual in each part of the strokes of one direction.
 struct Side {
+  Parts last = Parts::Zero();     // means of the last stroke, 0 where it has no samples
   Parts strokes = Parts::Zero();  // that have samples in a part
   Parts sums = Parts::Zero();     // of their means
   Parts squares = Parts::Zero();
@@ -178,6 +179,8 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   std::array<Side, 2> sides;
   double squares = 0.0;
   double samples = 0.0;
+  double carried = 0.0;  // Σ m·m of neighbouring strokes
+  double steady = 0.0;   // and what it is if nothing changes
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
     const double from = excitation[stroke.begin];
     const double way = excitation[stroke.end] - from;
@@ -193,14 +196,22 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
       own_squares += residual[i] * residual[i];
     }
     if (counts.sum() < 2) continue;  // left out, but for a reversal that it shares
-    const std::size_t side = stroke.direction > 0 ? 0 : 1;
+    const std::size_t direction = stroke.direction > 0 ? 0 : 1;
+    Side& side = sides[direction];
     const Parts means = sums / counts.max(1);
-    sides[side].strokes += (counts > 0).cast<double>();
-    sides[side].sums += means;
-    sides[side].squares += means.square();
-    ++structure.strokes[side];
+    side.strokes += (counts > 0).cast<double>();
+    side.sums += means;
+    side.squares += means.square();
+    if (structure.strokes[direction]++ > 0) {
+      carried += (means * side.last).sum();
+      steady += (means.square() + side.last.square()).sum() / 2;
+    }
+    side.last = means;
     squares += own_squares;
     samples += counts.sum();
+  }
+  if (std::ranges::min(structure.strokes) > 2 && steady > 0) {
+    structure.carried_over = carried / steady;
   }
   const std::optional<double> repeating = RepeatingSquare(sides, thresholds);
   if (!repeating) return structure;
