@@ -65,10 +65,6 @@ std::optional<Ends> ShapeBesideRig(const Thresholds& thresholds, const Record& r
   return Ends{.lower = parameters[kShape].lower95, .upper = parameters[kShape].upper95};
 }
 
-bool RigIsFound(const Thresholds& thresholds, const Record& record, double variance) {
-  return ShapeBesideRig(thresholds, record, variance).has_value();
-}
-
 // --- verdicts
 
 AdequacyTest TestWith(std::vector<OmittedTerm> fits, double p_value = 1.0) {
@@ -146,14 +142,6 @@ bool LoadIsFollowed(const Thresholds& thresholds, double amplitude) {
 using Row = std::pair<double Thresholds::*, Case>;
 const std::vector<Row>& Cases() {
   static const std::vector<Row> cases = {
-      {&Thresholds::shape_effect,
-       [](const Thresholds& t) {
-         const auto looks_for_a_rig = [&](double effect) {
-           const BranchLaw law{4e7, 1.0 / 3 - effect, 40.0};
-           return RigIsFound(t, testing::SprungLoop(law, HUGE_VAL), /*variance=*/1.0);
-         };
-         return !looks_for_a_rig(kBelow * 0.05) && looks_for_a_rig(kAbove * 0.05);
-       }},
       {&Thresholds::rigid_beside_rig,
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {

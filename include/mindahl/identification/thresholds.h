@@ -7,9 +7,6 @@ namespace mindahl::identification {
 /// changed by a factor of two.
 /// Limits on the work of a solver are not here.
 struct Thresholds {
-  /// [α] At a smaller difference from Mindlin's exponent no rig is tried. The branches then differ
-  /// by 1 % of Tc: less does not call for a rig, however certain.
-  double shape_effect = 0.05;
   /// [ΔAICc] Fits that differ by less are not distinguished. Evidence of e² to 1; by noise a
   /// superfluous parameter gains more with probability P(χ²₁ > 6) = 1.4 %.
   double indistinguishable = 4.0;

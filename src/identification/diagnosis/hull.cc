@@ -41,8 +41,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   // is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
       problem.parameters[kShape].has_prior() || shape.status == ParameterStatus::kFixed ||
-      !shape.upper95 || !(*shape.upper95 < kMindlinShapeExponent) ||
-      !(kMindlinShapeExponent - shape.value > thresholds.shape_effect)) {
+      !shape.upper95 || !(*shape.upper95 < kMindlinShapeExponent)) {
     return std::nullopt;
   }
   constexpr double kStiffer = 0.1;  // of the compliance is the contact's
