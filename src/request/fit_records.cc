@@ -174,17 +174,19 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   asked = identification::SelectTerms(views, asked.options, std::move(asked.fit));
   // A force in addition to the contact's may have decided the law: it is Dahl's own where this is
-  // adequate with one or two terms, and Masing's with any is not, or less likely.
+  // adequate with one or two terms, and Masing's is not, or less likely, or requires more.
   const auto is_adequate = [](const TermSelection& of) {
     return of.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   };
   const auto* const dahl = models::FindFrictionModel("dahl");
   if (chooses_law && asked.options.model != dahl &&
-      (!is_adequate(asked) || PrefersOther(asked.fit))) {
+      (!is_adequate(asked) || PrefersOther(asked.fit) || asked.added.size() > 1)) {
     options.model = dahl;
     TermSelection of_dahl = identification::SelectTerms(
         views, options, identification::Fit(records, options), identification::MostTerms::kTwo);
-    if (is_adequate(of_dahl)) asked = std::move(of_dahl);
+    const bool is_better =
+        !is_adequate(asked) || PrefersOther(asked.fit) || of_dahl.added.size() < asked.added.size();
+    if (is_adequate(of_dahl) && is_better) asked = std::move(of_dahl);
   }
   if (chooses_law) WithdrawPreference(asked.fit);
   return asked;
@@ -258,18 +260,12 @@ void AddTerm(const std::string& name, const Record& record, FitOptions& options,
   step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
-/// True if the law is the program's choice, and the fit leaves it open: a step may decide it.
-bool LeavesLawOpen(const FitRequest& request, const FitResult& fit) {
-  return request.fit.model == nullptr && fit.law_choice && !fit.law_choice->decided;
-}
-
-/// Fits with the options of a step.
+/// Fits with the options of a step, as the user will who gives them.
 /// @returns false where the record does not determine it, or the options are not those of its fit
-bool TryFit(std::span<const Record> records, const FitOptions& tried, bool chooses_law,
+bool TryFit(const FitRequest& request, std::span<const Record> records, const FitOptions& tried,
             FitResult& found) {
   try {
-    found = chooses_law ? FitByLaw(true, tried, records).fit
-                        : identification::Fit(records, tried, identification::Depth::kIntervals);
+    found = FitAsked(request, tried, records).fit;
   } catch (const InvalidArgument&) {
     return false;
   }
@@ -287,7 +283,7 @@ std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request
   tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
   constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
-  if (!TryFit(records, tried, LeavesLawOpen(request, fit), found) ||
+  if (!TryFit(request, records, tried, found) ||
       found.adequacy.verdict != AdequacyVerdict::kAdequate ||
       found.rms > kOfSteps * found.EncoderStep()) {
     return std::nullopt;
@@ -322,11 +318,13 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     return TryNoiseInDisplacement(request, options, records, fit, found);
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
+  FitOptions fitted = options;
+  fitted.model = fit.model;
+  for (const std::string& name : identification::LikelyTerms(views, fitted, fit, kMostTried)) {
     FitOptions tried = options;
     report::NextStep step;
     AddTerm(name, records.front(), tried, step);
-    if (!TryFit(records, tried, LeavesLawOpen(request, fit), found)) continue;
+    if (!TryFit(request, records, tried, found)) continue;
     const std::optional<double> after = found.adequacy.misfit_over_half_gap;
     if (!after || *after > (1 - options.thresholds.advised_gain) * *before) continue;
     if (LosesSlipForce(fit, found, tried)) continue;
@@ -422,15 +420,10 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   TermSelection asked = FitAsked(request, options, records);
   FitResult found;
   if (!request.chooses_terms) {
-    made.next =
-        FindNextStep(request, asked.options, records, !made.left_out.empty(), asked.fit, found);
+    made.next = FindNextStep(request, options, records, !made.left_out.empty(), asked.fit, found);
   }
   if (made.next && found.model == asked.fit.model) {
     identification::IncludeFit(found, asked.options.thresholds, asked.fit);
-  }
-  // With the step another law than the one that was tried may be the better one.
-  if (made.next && request.fit.model == nullptr && !LeavesLawOpen(request, asked.fit)) {
-    made.next->options += fmt::format(" --model {}", asked.options.model->name);
   }
   const bool is_described = made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion = FindDisproportion(asked.fit);

@@ -34,7 +34,7 @@ const std::vector<Answer> kAnswers = {
      {"repeats"}},
     {"APressureThatMakesTheForceIsTriedFirst",
      Words("fit measured/seals/Circle_2bar.csv") + kSeal,
-     {"next          --covariate 3 "},
+     {"next          --covariate 3: "},
      {"repeats"}},
     {"AContactBehindARigSaysThatItIsTheRig",
      "fit measured/tribometer/test_data_2.txt",
