@@ -116,6 +116,13 @@ void RunConvert(const ConvertOptions& given, Console& console) {
            "slip force are those at the mean load: --amplitude gives another"},
           console);
     }
+    const Json verdict = report::At(fit, "/adequacy/verdict");
+    if (verdict.is_string() && verdict != "adequate") {
+      Say("convert: note",
+          {fmt::format("the fit is {}: of its intervals only the values are converted",
+                       verdict.get<std::string>())},
+          console);
+    }
     left_out = fit.value(Json::json_pointer("/terms/added"), left_out);
     std::erase(left_out, "rig_stiffness");  // the amplitude is without it
     Require(request.law.alpha, "--alpha");

@@ -177,9 +177,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
 AlphaTest TestAlpha(const FitResult& fit) {
   AlphaTest test;
   const ParameterEstimate& alpha = *fit.Find("alpha");
-  if (alpha.status == ParameterStatus::kFixed) return test;
+  if (alpha.status == ParameterStatus::kFixed || !alpha.is_known()) return test;
   test.minus_third = alpha.value - kThird;
-  if (!alpha.is_known()) return test;
   test.is_rejected = ExcludesAThird(alpha);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {

@@ -131,8 +131,8 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
      "the loop began at a turn that is not recorded: start from the unloaded contact, or from the "
      "end of a stroke as wide as any before it"},
     {"unknown_past",
-     "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
-     "--initial-state virgin"},
+     "the record does not end as it began, and the earlier loading is not known: record more "
+     "cycles, or give --initial-state virgin"},
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},

@@ -57,11 +57,13 @@ Json RowOf(const BatchEntry& entry, const Json& fit) {
   }
   for (const std::string name : report::kLawParameters) {
     const Json parameter = At(fit, "/parameters/" + name);
-    row[name] = At(parameter, "/value");
+    const Json verdict = At(parameter, "/identifiability");
+    const bool is_known = verdict != "bounded_below" && verdict != "not_identifiable";
+    row[name] = is_known ? At(parameter, "/value") : Json();
     row[name + "_error"] = At(parameter, "/standard_error");
     row[name + "_lower95"] = At(parameter, "/ci95/0");
     row[name + "_upper95"] = At(parameter, "/ci95/1");
-    row[name + "_verdict"] = At(parameter, "/identifiability");
+    row[name + "_verdict"] = verdict;
   }
   std::vector<std::string> codes;
   for (const Json& warning : At(fit, "/warnings")) {
@@ -102,8 +104,6 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
       if (!row["done"].get<bool>() || !is_loop || row[name].is_null()) continue;
       const double value = row[name];
       if (!parameter.empty()) {
-        const Json& verdict = row[parameter + "_verdict"];
-        if (verdict == "bounded_below" || verdict == "not_identifiable") continue;
         const Json& error = row[parameter + "_error"];
         // μ = Tc/N scatters as Tc does.
         const double factor = value / row[parameter].get<double>();

@@ -57,6 +57,14 @@ TEST_F(Convert, TakesAFit) {
   EXPECT_GT(made["amplitude"], 0.0);
 }
 
+TEST_F(Convert, SaysWhereTheFitIsNotAdequate) {
+  json fit = JsonOf("fit " + SampleRecord());
+  const auto notes = [&] { return Done("convert --to dahl " + Write("fit.json", fit.dump())).err; };
+  EXPECT_THAT(notes(), Not(HasSubstr("the fit is")));
+  fit["adequacy"]["verdict"] = "doubtful";
+  EXPECT_THAT(notes(), HasSubstr("the fit is doubtful: of its intervals only the values"));
+}
+
 TEST_F(Convert, FitsARecordWithTheColumnsThatAreChosen) {
   const json fitted = JsonOf("fit " + SampleRecord());
   const json made = JsonOf("convert --to dahl --displacement 2 --force 3 " + SampleRecord());

@@ -63,6 +63,15 @@ TEST(Json, OfATorqueHasItsUnitsAndNoContact) {
   EXPECT_TRUE(document["mapping"]["alpha_minus_third"].is_null());
 }
 
+TEST(Json, HasNoDistanceFromAThirdOfAShapeThatIsNotKnown) {
+  ReportInput input = MadeInput();
+  EXPECT_FALSE(Document(input)["mapping"]["alpha_minus_third"].is_null());
+  for (identification::ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.identifiability = identification::Identifiability::kNotIdentifiable;
+  }
+  EXPECT_TRUE(Document(input)["mapping"]["alpha_minus_third"].is_null());
+}
+
 TEST(Json, ListsWhatIsLeftOut) {
   ReportInput input = MadeInput();
   input.records[0].lines = {2, 3, 4, 5, 6, 7, 8, 9, 10};

@@ -188,6 +188,12 @@ TEST(BatchTable, HasEachNumberInItsColumn) {
                 std::string(Version()) + "\n");
 }
 
+TEST(BatchTable, HasNoValueThatIsNotKnown) {
+  const auto made = EntriesOf({{1234, 1, kNormal95, "bounded_below", 48}});
+  EXPECT_THAT(AnswerOf(made).table, Not(HasSubstr("1234,")));
+  EXPECT_THAT(AnswerOf(made).table, HasSubstr("bounded_below"));
+}
+
 TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
   std::vector<BatchEntry> entries = {EntryOfAllColumns(), {}};
   entries[1].file = "c";

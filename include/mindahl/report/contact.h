@@ -35,7 +35,7 @@ std::vector<ContactQuantity> DescribeContact(const identification::FitResult& fi
 /// Tests the fitted exponent against Mindlin's 1/3, which is rejected if and only if it lies
 /// outside the interval of α. No test is made where α was held or is not identifiable.
 struct AlphaTest {
-  std::optional<double> minus_third;  ///< α − 1/3; empty where α was held
+  std::optional<double> minus_third;  ///< α − 1/3; empty where α was held or is not known
   std::optional<bool> is_rejected;
   std::optional<double> p_value;  ///< two-sided, of Student's t; empty where α is at a bound
 };

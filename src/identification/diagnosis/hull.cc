@@ -208,8 +208,7 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
   IncludeRatios(parameters[kStiffness], RatiosOfStiffness(fitted, thresholds));
   for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
-    estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed &&
-                                    result.adequacy.use != Use::kNone;
+    estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed;
   }
   const loop::LoopFacts& facts = result.WidestRecord().facts;
   const double load_ratio = result.WidestRecord().load_ratio;

@@ -276,6 +276,7 @@ void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.standard_error.reset();
   estimate.lower95.reset();
   estimate.upper95.reset();
+  estimate.includes_discrepancy = false;
 }
 
 }  // namespace mindahl::identification
