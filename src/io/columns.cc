@@ -290,19 +290,21 @@ void Observe(std::vector<Column>& columns) {
   const bool has_force = std::ranges::any_of(
       columns, [](const Column& of) { return of.dimension == Dimension::kForce; });
   bool has_friction = false;
-  bool has_ratio = false;
+  bool has_other = false;  // a ratio or a force to either side
   for (Column& of : columns) {
     const bool may_be = has_force && of.unit.empty() && of.least > -kGreatestCoefficient &&
                         of.greatest < kGreatestCoefficient;
     if (may_be && (of.word == "friction" || of.word == "f")) of.unit = kRatioUnit;
-    has_ratio = has_ratio || of.unit == kRatioUnit || of.rank == kRatio;
-    has_friction = has_friction || (of.names(Role::kForce) && of.rank == 0);
+    const bool is_force = of.names(Role::kForce);
+    has_other = has_other || of.unit == kRatioUnit || of.rank == kRatio ||
+                (is_force && of.rank != kLoad && of.least < 0 && of.greatest > 0);
+    has_friction = has_friction || (is_force && of.rank == 0);
   }
   for (Column& of : columns) {
     const bool is_load =
-        of.names(Role::kForce) && of.rank == 2 && !of.is_angular && of.other_words == 0;
+        of.names(Role::kForce) && of.rank == kLoad && !of.is_angular && of.other_words == 0;
     const bool keeps_sign = of.least > 0 || of.greatest < 0;
-    if (is_load && (has_friction || (has_ratio && keeps_sign))) of.role = Role::kNormalLoad;
+    if (is_load && (has_friction || (has_other && keeps_sign))) of.role = Role::kNormalLoad;
   }
 }
 

@@ -15,7 +15,9 @@ struct WordRow {
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 
-// The rank of what is a force only when it is multiplied by a load.
+// The ranks of a machine's load, which is the normal one beside another force, and of what is a
+// force only when it is multiplied by a load.
+inline constexpr int kLoad = 2;
 inline constexpr int kRatio = 6;
 
 // One-letter words count as they are written, and only as a whole name.
@@ -42,7 +44,8 @@ inline constexpr std::array kWords = {
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
             "force|friction|*kraft|effort|fuerza|forza|força|forca|力|loadcell|ロードセル"},
-    WordRow{Role::kForce, 2, false, "load|last|charge|carga|carico|weight|gewicht|载荷|荷载|荷重"},
+    WordRow{Role::kForce, kLoad, false,
+            "load|last|charge|carga|carico|weight|gewicht|载荷|荷载|荷重"},
     WordRow{Role::kForce, 2, true,
             "torque|moment|*drehmoment|couple|coppia|par|tau|τ|扭矩|力矩|トルク"},
     WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},

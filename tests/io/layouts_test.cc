@@ -257,6 +257,17 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
   EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("the unit 'ratio' of"));
 }
 
+TEST(Evidence, OfALoadThatKeepsItsSignBesideAForceThatDoesNotIsOfANormalLoad) {
+  for (const char* force : {"Fx [N]", "Ft [N]", "Q [N]", "Force [N]"}) {
+    const std::string names = fmt::format("x [mm],{},Load [N]\n", force);
+    const RecordFile pressed = Read(names + "0,1,50.1\n1,2,49.8\n-1,-3,50.2\n1,2,49.9\n");
+    EXPECT_EQ(pressed.force.index, 2U) << force;
+    EXPECT_EQ(pressed.normal_load.index, 3U) << force;
+    const RecordFile pulled = Read(names + "0,1,5\n1,2,9\n-1,3,-7\n1,2,9\n");
+    EXPECT_EQ(pulled.normal_load.index, 0U) << force;
+  }
+}
+
 TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
   EXPECT_THAT(Refusal("t,x,F\ns,mm,N\n0,1,2\n1,2,3\nt,F,x\ns,N,mm\n2,3,2\n3,4,5\n"),
               HasSubstr("loop.csv:5:1: 't' is not a number"));
