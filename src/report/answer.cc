@@ -74,7 +74,7 @@ class Writer {
     AddLeftOut();
     if (report_.next) {
       Add("next", fmt::format("{}: {}", report_.next->options, NextStatement(*report_.next)));
-    } else {
+    } else if (report_.check.empty()) {
       AddCause();
     }
     AddRest();
