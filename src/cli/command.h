@@ -175,7 +175,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_fric
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
 
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
-/// slip is only approached.
+/// slip is only approached, or later: of α > 2/3.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);

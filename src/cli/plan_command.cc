@@ -36,8 +36,8 @@ struct Plan {
   std::vector<std::string> notes = {};
 };
 
-/// Takes law and noise from a fit of a record by Masing's law; where it does not identify α, with
-/// Mindlin's.
+/// Takes law and noise from a fit of a record by Masing's law, or by Dahl's own where that fits
+/// better; where it does not identify α, with Mindlin's.
 void TakeRecord(const PlanOptions& options, Plan& plan) {
   if (IsAnythingGiven(options.law)) Refuse("--record excludes --sigma, --alpha and --slip-force");
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
@@ -45,6 +45,11 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   identification::FitOptions fit_options;
   if (options.rig_stiffness) fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
+  if (fit.law_choice && fit.law_choice->prefers_alternative()) {
+    plan.notes.emplace_back("Dahl's own law fits better than Masing's: the loops are of that");
+    fit_options.model = fit.law_choice->alternative;
+    fit = identification::Fit({&file.record, 1}, fit_options);
+  }
   if (fit.converged && !fit.Find("alpha")->is_known()) {
     plan.notes.emplace_back("alpha is not identified: Mindlin's 1/3 is assumed");
     fit_options.fixed["alpha"] = contact::kMindlinShapeExponent;
@@ -55,14 +60,24 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   }
   if (fit.adequacy.verdict != identification::AdequacyVerdict::kAdequate) {
     plan.notes.emplace_back(
-        "Masing's law does not describe this record: what it misses counts as noise");
+        "the law does not describe this record: what it misses counts as noise");
   }
   for (const std::string_view name : {"sigma", "slip_force"}) {
     if (fit.Find(name)->is_known()) continue;
     plan.notes.push_back(fmt::format("{} is not identified: its value is a guess", name));
   }
   plan.expected.law = fit.law;
-  plan.expected.force_noise = fit.force_noise;
+  plan.expected.model = fit.model;
+  // Errors of n samples that count as m are those of white noise √(n/m) as large.
+  constexpr double kWhite = 1.1;
+  const auto samples = static_cast<double>(fit.residuals.samples);
+  const double longer = std::sqrt(samples / fit.residuals.effective_samples);
+  plan.expected.force_noise = fit.force_noise * std::max(longer, 1.0);
+  if (longer > kWhite) {
+    plan.notes.push_back(
+        fmt::format("the noise is autocorrelated: {:.3g} N counts as {:.3g} N of white noise",
+                    fit.force_noise, plan.expected.force_noise));
+  }
   plan.expected.displacement_noise = fit.records.front().displacement_noise;
 }
 

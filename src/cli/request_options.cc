@@ -199,8 +199,8 @@ void AddLawParameters(const OptionGroup& group, LawOptions& law) {
 }
 
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
-  const double slip = models::GrossSlipDisplacement(law);
-  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+  return std::min(models::GrossSlipDisplacement(law),
+                  3 * law.slip_force / law.tangential_stiffness) +
          law.slip_force / rig.stiffness;
 }
 

@@ -42,11 +42,11 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
   record.displacement = std::move(excitation.displacement);
   record.time = std::move(excitation.time);
   const std::vector<std::size_t> reversals = loop::FindReversals(record.displacement, 0.0);
-  const models::FrictionModel& masing = *models::FindFrictionModel("mindlin-dahl");
-  const models::LoadingPath path = models::MakeLoadingPath(
-      record.displacement, reversals, masing.memory, {.state = models::InitialState::kSteady});
+  const models::LoadingPath path =
+      models::MakeLoadingPath(record.displacement, reversals, expected.model->memory,
+                              {.state = models::InitialState::kSteady});
   record.force.resize(record.size());
-  models::EvaluateForce(masing, expected.law, path, record.displacement, record.force,
+  models::EvaluateForce(*expected.model, expected.law, path, record.displacement, record.force,
                         expected.rig);
   return record;
 }
@@ -54,6 +54,7 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
 /// Returns the options of a fit of the loop, from the values that are expected.
 FitOptions OptionsOf(const Expectation& expected) {
   FitOptions options;
+  options.model = expected.model;
   options.initial_state = models::InitialState::kSteady;
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;

@@ -118,12 +118,39 @@ TEST_F(PlanCommand, TakesTheLawOfItsRecordAndSaysWhatIsNotKnown) {
               Contains(HasSubstr("alpha is not identified: Mindlin's 1/3 is assumed")));
 }
 
-TEST_F(PlanCommand, OfARecordOfDahlsLawSaysThatMasingsDoesNotDescribeIt) {
-  const json plan = JsonOf("plan --amplitude 3e-6 --record " +
-                           Simulated("--model dahl --alpha 0.5 --amplitude 1.2e-6 --cycles 3 "
-                                     "--noise-force 0.1"));
+TEST_F(PlanCommand, OfARecordOfDahlsLawHasLoopsOfThat) {
+  const std::string loop =
+      Simulated("--model dahl --alpha 0.5 --amplitude 1.2e-6 --cycles 3 --noise-force 0.1");
+  const json plan = JsonOf("plan --amplitude 3e-6 --record " + loop);
+  EXPECT_NEAR(plan["expected"]["sigma"].get<double>() / 4e7, 1, 0.01);
+  EXPECT_NEAR(plan["expected"]["alpha"], 0.5, 0.03);
+  const double slip_force = plan["expected"]["slip_force"];
+  EXPECT_NEAR(slip_force, 40.0, 1.0);
+  const models::BranchLaw law{plan["expected"]["sigma"], plan["expected"]["alpha"], slip_force};
+  EXPECT_NEAR(plan["loops"][0]["peak_force"].get<double>() /
+                  models::SteadyPeakForce(*models::FindFrictionModel("dahl"), law, 3e-6),
+              1, 1e-3);
+}
+
+TEST_F(PlanCommand, CountsAutocorrelatedNoiseAsTheWhiteNoiseOfAsLargeErrors) {
+  const std::string clean = FileContent(Simulated("--lambda 2 --cycles 4 --samples-per-cycle 200"));
+  std::vector<std::string> lines = Lines(clean);
+  testing::Generator generator(1);
+  double noise = 0.0;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    noise = 0.9 * noise + 0.1 * testing::Normal(generator);
+    lines[i] += fmt::format(",{}", std::stod(lines[i].substr(lines[i].rfind(',') + 1)) + noise);
+  }
+  lines[0] += ",noisy [N]";
+  const std::string file = Write("slow.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  const json plan = JsonOf("plan --amplitude 3e-6 --cycles 4 --force noisy --record " + file);
+  const json fit = JsonOf("fit --force noisy " + file);
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    const double planned = plan["loops"][0]["parameters"][name]["standard_error"];
+    EXPECT_NEAR(planned / fit["parameters"][name]["standard_error"].get<double>(), 1, 0.5) << name;
+  }
   EXPECT_THAT(plan["notes"].get<std::vector<std::string>>(),
-              Contains(HasSubstr("Masing's law does not describe this record")));
+              Contains(HasSubstr("the noise is autocorrelated: 0.2")));
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ namespace mindahl::identification {
 
 /// Holds the assumed properties of the contact and the noise of the channels.
 struct Expectation {
-  models::BranchLaw law{};          ///< law with Masing's memory
+  models::BranchLaw law{};
+  /// Has the law's memory: Masing's ("mindlin-dahl") or Dahl's own ("dahl").
+  const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
   models::SeriesSpring rig{};       ///< in series; its stiffness is known
   double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
