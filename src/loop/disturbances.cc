@@ -42,9 +42,8 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
   if (!(step > kFinest * (highest - lowest))) return false;
   auto broken = kMostBroken * static_cast<double>(displacement.size() - 1);  // that are left
   std::size_t rest = 1;                                                      // samples
-  std::size_t first_rest = 0;                                                // 0 before it
-  bool rests_differ = false;
   double last = 0.0;  // steps of the last motion
+  std::set<std::size_t> rests;
   std::set<double> speeds;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = (displacement[i] - displacement[i - 1]) / step;
@@ -54,15 +53,12 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
       ++rest;
       continue;
     }
-    if (last != 0 && (rests_at_turns || last * nearest > 0)) {
-      rests_differ = rests_differ || (first_rest != 0 && rest != first_rest);
-      if (first_rest == 0) first_rest = rest;
-    }
+    if (last != 0 && (rests_at_turns || last * nearest > 0)) rests.insert(rest);
+    if (speeds.size() < kSpeeds) speeds.insert(std::abs(nearest));
     last = nearest;
     rest = 1;
-    if (speeds.size() < kSpeeds) speeds.insert(std::abs(nearest));
   }
-  return rests_differ || speeds.size() == kSpeeds;
+  return rests.size() > 1 || speeds.size() == kSpeeds;
 }
 
 /// Windows that are tried, each about √2 times the last.
