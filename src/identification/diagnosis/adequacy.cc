@@ -191,7 +191,9 @@ void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result) {
            (!other.parameters.empty() && !other.code.row().holds_without_model);
   });
   for (ParameterEstimate& estimate : result.parameters) {
-    const bool covers = is_loop && estimate.includes_discrepancy && adequacy.use != Use::kNone;
+    // The interval of Tc holds what is measured, whatever the use.
+    const bool covers = is_loop && estimate.includes_discrepancy &&
+                        (adequacy.use != Use::kNone || estimate.name == "slip_force");
     if (estimate.status == ParameterStatus::kFixed || covers) continue;
     WithdrawInterval(estimate);
     finding.parameters.push_back(estimate.name);
