@@ -23,7 +23,7 @@ class CycleTable(Told, Table):
     headline: the whole test in one line.
     changes: sentences on steps and trends beyond chance, at most ten; empty if there are none.
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
-        "first", "last", "settled_at" and "changes".
+        "first", "last", "settled_at", "varies" and "changes".
     established: did any fit converge?
     """
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -21,10 +22,13 @@ constexpr double kSmallestStep = 0.02;     // [-] of the value before it
 constexpr double kSmallestTrend = 0.01;    // [-] of the segment's mean
 constexpr double kOfScatter = 4;           // [standard deviations] enough whatever the size
 constexpr double kSettled = 0.05;          // [-] of the whole change
+constexpr double kOfNeighbours = 10;       // [their variances] that scatter about segments has not
+constexpr double kOfAll = 0.25;            // [-] of the variance of all values, likewise
 constexpr std::size_t kLeastBins = 4;      // of a segment: two beyond a line
 constexpr std::size_t kFewestToTest = 20;  // rows in which no change is found are said to have none
-constexpr std::size_t kOfAnEnd = 3;        // bins or cycles that show how a test begins or ends
-constexpr int kDepth = 3;                  // up to eight segments
+constexpr std::size_t kOfAnEnd = 3;        // cycles that show how a test ends
+constexpr std::size_t kMostSegments = 8;
+constexpr double kExact = 1e-3;  // [-] of a value: less is no scatter
 
 using Bins = std::span<const Course::Bin>;
 
@@ -65,41 +69,64 @@ Line LineThrough(Bins bins) {
   return line;
 }
 
+/// Returns the squared second differences of neighbours, over their variance at one value's of 1. A
+/// trend leaves these alone, and their median disregards steps.
+std::vector<double> SquaredBends(Bins bins) {
+  std::vector<double> squares;
+  for (std::size_t k = 2; k < bins.size(); ++k) {
+    const double bend = bins[k - 2].value - 2 * bins[k - 1].value + bins[k].value;
+    squares.push_back(bend * bend /
+                      (1 / bins[k - 2].count + 4 / bins[k - 1].count + 1 / bins[k].count));
+  }
+  return squares;
+}
+
+double MedianOf(std::vector<double> values) { return boost::math::statistics::median(values); }
+
+/// Returns the variance of a value that squared bends show.
+double VarianceOf(std::vector<double> squares) {
+  constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
+  return MedianOf(std::move(squares)) / kMedianOfChiSquared;
+}
+
+/// Returns the least variance of a value, in as many as a bin counts.
+double FloorOf(const Course::Bin& bin) { return bin.count * std::pow(kExact * bin.value, 2); }
+
+/// Returns the bins, each counting as many values of the usual scatter as determine its mean so
+/// well: by its standard errors and the scatter beyond these, and by the scatter of neighbours
+/// within a window to either side of it, the larger of the two.
+std::vector<Course::Bin> Weighted(Bins bins) {
+  std::vector<Course::Bin> weighted(bins.begin(), bins.end());
+  std::vector<double> errors;
+  for (const Course::Bin& bin : bins) errors.push_back(bin.squared_error);
+  const double error = MedianOf(errors);
+  const double usual = std::max(error, VarianceOf(SquaredBends(bins)));
+  const double least = kExact * kExact * usual;
+  if (!(usual > 0)) return weighted;
+  for (Course::Bin& bin : weighted) {
+    bin.count *= usual / std::max(least, usual - error + bin.squared_error);
+  }
+  const std::vector<double> squares = SquaredBends(weighted);
+  const std::size_t window =
+      std::min(squares.size(), std::clamp<std::size_t>(bins.size() / 8, 16, 32));
+  std::vector<double> scatter;  // of the window that begins at each
+  for (auto end = squares.begin() + static_cast<std::ptrdiff_t>(window);; ++end) {
+    scatter.push_back(VarianceOf({end - static_cast<std::ptrdiff_t>(window), end}));
+    if (end == squares.end()) break;
+  }
+  for (std::size_t i = 0; i < weighted.size(); ++i) {
+    const double before = scatter[std::min(std::max(i, window) - window, scatter.size() - 1)];
+    const double after = scatter[std::min(i, scatter.size() - 1)];
+    weighted[i].count *= usual / std::max({before, after, FloorOf(weighted[i]), least});
+  }
+  return weighted;
+}
+
 /// The scatter of a time history, apart from what it follows.
 struct Noise {
   double variance = 0.0;  // of a value, as it counts in means over many
   double degrees = 0.0;   // of freedom of that
 };
-
-/// Estimates it from second differences of the means of neighbouring blocks: a
-/// trend leaves these alone, their median disregards steps, and in blocks of
-/// eight bins correlated ones count.
-Noise NoiseOf(Bins bins) {
-  constexpr std::size_t kLongest = 8;
-  constexpr std::size_t kBlocks = 16;
-  constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
-  constexpr double kExact = 1e-3;                // of a value: less is no scatter
-  const std::size_t length = std::clamp<std::size_t>(bins.size() / kBlocks, 1, kLongest);
-  std::vector<Course::Bin> blocks;
-  double exact = 0.0;
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    if (i % length > 0) {
-      blocks.back().Merge(bins[i]);
-    } else {
-      blocks.push_back(bins[i]);
-    }
-    exact = std::max(exact, bins[i].count * std::pow(kExact * bins[i].value, 2));
-  }
-  std::vector<double> squares;
-  for (std::size_t k = 2; k < blocks.size(); ++k) {
-    const double bend = blocks[k - 2].value - 2 * blocks[k - 1].value + blocks[k].value;
-    squares.push_back(bend * bend /
-                      (1 / blocks[k - 2].count + 4 / blocks[k - 1].count + 1 / blocks[k].count));
-  }
-  const double degrees = static_cast<double>(squares.size()) / 2;
-  const double variance = boost::math::statistics::median(squares) / kMedianOfChiSquared;
-  return {std::max(variance, exact), degrees};
-}
 
 /// True if a change is worth a statement: by its size, or as it stands out of the scatter.
 bool IsLarge(double change, double smallest, const Noise& noise) {
@@ -109,7 +136,8 @@ bool IsLarge(double change, double smallest, const Noise& noise) {
 /// A part of a time history that a line describes.
 struct Segment {
   Bins bins;
-  Line line;
+  Line line = LineThrough(bins);
+  std::size_t begin = bins.front().first_cycle;
 
   /// Returns the line's value within what values there were.
   [[nodiscard]] double At(const Course::Bin& bin) const {
@@ -119,58 +147,93 @@ struct Segment {
   }
   [[nodiscard]] double first() const { return At(bins.front()); }
   [[nodiscard]] double last() const { return At(bins.back()); }
-  [[nodiscard]] double DistanceOf(const Course::Bin& bin) const {
-    return std::abs(bin.value - line.At(bin.cycle));
-  }
-  /// Returns by how much the line misses the values, beyond their scatter: of a curve.
-  [[nodiscard]] double Misfit(const Noise& noise) const {
-    const double squares = line.squares() / static_cast<double>(bins.size());
-    return std::sqrt(std::max(0.0, squares - noise.variance) / bins.front().count);
-  }
 };
 
-/// Appends the segments of these bins. The bin between two segments is in the line of neither, as
-/// what changes within a cycle makes it a mixture of both; the nearer has it.
-void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segments) {
-  Line one;
-  std::vector<double> squares;  // of the lines through so many bins and through the others
-  for (const Course::Bin& bin : bins) {
-    squares.push_back(one.squares());
-    one.Add(bin);
-  }
-  Line others;
-  std::size_t place = 0;
-  double least = one.squares();
-  for (std::size_t k = bins.size() - 1; depth > 0 && k >= kLeastBins; --k) {
-    squares[k] += others.squares();
-    others.Add(bins[k]);
-    if (squares[k] < least && k + kLeastBins < bins.size()) {
-      least = squares[k];
-      place = k;
+/// Estimates it within segments, from means of neighbouring blocks of up to eight bins, in which
+/// correlated ones count.
+/// @param bins  all of them, with their outliers
+Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t longest = 8) {
+  constexpr std::size_t kBlocks = 16;
+  const std::size_t length = std::clamp<std::size_t>(bins.size() / kBlocks, 1, longest);
+  std::vector<double> squares;
+  double exact = 0.0;
+  for (const Segment& segment : segments) {
+    std::vector<Course::Bin> blocks;
+    const Course::Bin* bin = &bins[segment.bins.data() - segments.front().bins.data()];
+    for (std::size_t i = 0; i < segment.bins.size(); ++i, ++bin) {
+      if (i % length == 0) {
+        blocks.push_back(*bin);
+      } else {
+        blocks.back().Merge(*bin);
+      }
+      exact = std::max(exact, FloorOf(*bin));
     }
+    const std::vector<double> own = SquaredBends(blocks);
+    squares.insert(squares.end(), own.begin(), own.end());
   }
-  constexpr double kMore = 4;  // a level, a slope, a place and the bin there
-  const double f = (one.squares() - least) / kMore / noise.variance;
-  // Squares of numbers near the largest double overflow.
-  const double p_value =
-      place == 0 || !std::isfinite(f)
-          ? 1.0
-          : std::min(1.0, static_cast<double>(bins.size()) * PValueOfF(f, kMore, noise.degrees));
-  if (p_value < kChance) {
-    Divide(bins.first(place), noise, depth - 1, segments);
-    const std::size_t next = segments.size();
-    Divide(bins.subspan(place + 1), noise, depth - 1, segments);
-    Segment& before = segments[next - 1];
-    Segment& after = segments[next];
-    if (before.DistanceOf(bins[place]) < after.DistanceOf(bins[place])) {
-      before.bins = {before.bins.data(), before.bins.size() + 1};
-    } else {
-      after.bins = {after.bins.data() - 1, after.bins.size() + 1};
-    }
-    return;
-  }
-  segments.push_back({bins, one});
+  if (squares.empty()) return {std::numeric_limits<double>::infinity(), 1.0};
+  return {std::max(VarianceOf(squares), exact), static_cast<double>(squares.size()) / 2};
 }
+
+/// Finds the segments of bins whose lines miss the least squares, for each number of segments. The
+/// bin between two is in the line of neither, as what changes within a cycle makes it a mixture of
+/// both.
+class Divisions {
+ public:
+  explicit Divisions(Bins bins) : bins_(bins) {
+    best_.fill(std::vector<Best>(bins.size() + 1));
+    for (std::size_t begin = 0; begin + kLeastBins <= bins.size(); ++begin) {
+      Line line = LineThrough(bins.subspan(begin, kLeastBins - 1));
+      for (std::size_t end = begin + kLeastBins; end <= bins.size(); ++end) {
+        line.Add(bins[end - 1]);
+        if (begin == 0) best_[0][end].squares = line.squares();
+        for (std::size_t k = 1; k < kMostSegments && begin > 0; ++k) {
+          const double squares = best_[k - 1][begin - 1].squares + line.squares();
+          if (squares < best_[k][end].squares) best_[k][end] = {squares, begin};
+        }
+      }
+    }
+  }
+
+  /// Returns the number of segments that the F test calls for.
+  [[nodiscard]] std::size_t CountFor(const Noise& noise) const {
+    constexpr double kMore = 4;  // a level, a slope, a place and the bin there
+    const double chance = kChance / static_cast<double>(bins_.size());
+    const double price = kMore * noise.variance * QuantileOfF(chance, kMore, noise.degrees);
+    const auto cost = [&](std::size_t count) {
+      return best_[count - 1].back().squares + static_cast<double>(count - 1) * price;
+    };
+    std::size_t best = 1;
+    for (std::size_t count = 2; count <= kMostSegments; ++count) {
+      if (cost(count) < cost(best)) best = count;
+    }
+    return best;
+  }
+
+  /// True if there are bins for so many segments, and squares that are numbers.
+  [[nodiscard]] bool Have(std::size_t count) const {
+    return std::isfinite(best_[count - 1].back().squares);
+  }
+
+  [[nodiscard]] std::vector<Segment> Segments(std::size_t count) const {
+    std::vector<Segment> segments;
+    for (std::size_t end = bins_.size(); count-- > 0;
+         end = segments.front().bins.data() - bins_.data() - 1) {
+      const std::size_t begin = best_[count][end].begin;
+      segments.insert(segments.begin(), {bins_.subspan(begin, end - begin)});
+    }
+    return segments;
+  }
+
+ private:
+  struct Best {
+    double squares = std::numeric_limits<double>::infinity();
+    std::size_t begin = 0;  // of the last segment
+  };
+  Bins bins_;
+  // Of one segment more than the first index, of as many first bins as the second.
+  std::array<std::vector<Best>, kMostSegments> best_;
+};
 
 /// Returns the bins, each with the median of it and its neighbours, of an end the next two: one
 /// alone that is off is none.
@@ -192,59 +255,54 @@ std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
   for (const Segment& each : segments) {
     change = std::max({change, std::abs(each.first() - end), std::abs(each.last() - end)});
   }
+  const std::size_t first = segments.front().begin;
   const std::size_t last = segments.back().bins.back().last_cycle;
-  const std::size_t first = segments.front().bins.front().first_cycle;
-  std::optional<std::size_t> settled;
-  for (const Segment& each : segments) {
-    for (const Course::Bin& bin : each.bins) {
-      const bool is_near = std::abs(each.line.At(bin.cycle) - end) <= kSettled * change;
-      settled = is_near ? settled.value_or(bin.first_cycle) : std::optional<std::size_t>();
+  std::size_t settled = last + 1;
+  for (auto each = segments.rbegin(); each != segments.rend(); ++each) {
+    while (settled > each->begin) {
+      const double value = each->line.At(static_cast<double>(settled - 1));
+      if (!(std::abs(value - end) <= kSettled * change)) break;
+      --settled;
     }
+    if (settled > each->begin) break;
   }
-  if (!settled || *settled == first || 10 * (last - *settled) < last - first) return std::nullopt;
+  if (settled == first || 10 * (last - std::min(settled, last)) < last - first) return std::nullopt;
   return settled;
 }
 
-/// Returns the first cycle after a step: in the bin that is a mixture of both
-/// levels, by their shares.
-std::size_t PlaceOfStep(const Segment& before, const Segment& after) {
-  const Course::Bin& last = before.bins.back();
-  const Course::Bin& first = after.bins.front();
-  const Course::Bin& mixed = before.DistanceOf(last) > after.DistanceOf(first) ? last : first;
-  const double to = after.line.At(mixed.cycle);
-  const double share = (mixed.value - to) / (before.line.At(mixed.cycle) - to);
-  const auto cycles = static_cast<double>(mixed.last_cycle + 1 - mixed.first_cycle);
-  return mixed.first_cycle +
-         static_cast<std::size_t>(std::lround(cycles * std::clamp(share, 0.0, 1.0)));
-}
-
-/// Returns the step from one segment to the next where there is one: a jump by
-/// more than slopes make of it within the shortest segment and lines miss of a
-/// curve, and beyond chance at one of so many places.
+/// Returns the step from one segment to the next where there is one: a jump at
+/// the bin between, by more than slopes make of it within the shortest segment,
+/// and beyond chance at one of so many places.
 std::optional<Change> StepBetween(const Segment& before, const Segment& after, const Noise& noise,
                                   std::size_t places) {
-  Change step = {.from = before.last(), .to = after.first()};
-  const double jump = std::abs(step.to - step.from);
-  if (!(jump > kOfScatter * std::max(before.Misfit(noise), after.Misfit(noise)))) return {};
-  step.first_cycle = step.last_cycle = PlaceOfStep(before, after);
+  const Course::Bin& between = *(after.bins.data() - 1);
+  const double from = before.line.At(between.cycle);
+  const double to = after.line.At(between.cycle);
+  // The bin between is a mixture of both levels, by their cycles.
+  const auto cycles = static_cast<double>(between.last_cycle + 1 - between.first_cycle);
+  const double share = std::clamp((between.value - to) / (from - to), 0.0, 1.0);
   const double steepest = std::max(std::abs(before.line.slope()), std::abs(after.line.slope()));
-  const double width = static_cast<double>(kLeastBins) * before.bins.front().count;
-  const double error = std::sqrt(noise.variance * (before.line.VarianceAt(before.bins.back()) +
-                                                   after.line.VarianceAt(after.bins.front())));
-  step.p_value =
+  const double width =
+      static_cast<double>(kLeastBins) * (before.bins[1].cycle - before.bins[0].cycle);
+  const double jump = std::abs(to - from);
+  const double error = std::sqrt(
+      noise.variance * (before.line.VarianceAt(between) + after.line.VarianceAt(between)));
+  const double p_value =
       std::min(1.0, static_cast<double>(places) * PValueOfT(jump / error, noise.degrees));
-  const bool is_large =
-      IsLarge(jump, kSmallestStep * std::abs(step.from), noise) && jump > width * steepest;
-  return is_large && step.p_value < kChance ? std::optional(step) : std::nullopt;
+  const bool is_large = IsLarge(jump, kSmallestStep * std::abs(from), noise);
+  if (!(is_large && jump > width * steepest && p_value < kChance)) return {};
+  const std::size_t place =
+      between.first_cycle + static_cast<std::size_t>(std::lround(cycles * share));
+  return Change{place, place, before.last(), after.first(), p_value};
 }
 
 constexpr std::array kQuantities = {
-    TrackedQuantity{"friction_coefficient", "μ", ""},
-    TrackedQuantity{"slip_force", "Tc", "slip_force_open"},
+    TrackedQuantity{"friction_coefficient", "μ", "slip_force"},
+    TrackedQuantity{"slip_force", "Tc", "slip_force"},
     TrackedQuantity{"half_gap", "half gap", ""},
-    TrackedQuantity{"sigma", "σ", "sigma_open"},
-    TrackedQuantity{"contact_radius", "a", "sigma_open"},
-    TrackedQuantity{"alpha", "", "alpha_open"},
+    TrackedQuantity{"sigma", "σ", "sigma"},
+    TrackedQuantity{"contact_radius", "a", "sigma"},
+    TrackedQuantity{"alpha", "", "alpha"},
     TrackedQuantity{"energy", "", ""},
     TrackedQuantity{"energy_ratio", "", ""},
 };
@@ -265,13 +323,14 @@ std::string RelativeChange(double from, double to) {
 }
 
 /// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
-std::string FromTo(double from, double to, const std::string& unit) {
+std::string FromTo(double from, double to, const std::string& unit,
+                   std::string_view arrow = " → ") {
   const double largest = std::max(std::abs(from), std::abs(to));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
   const auto text = [&](double value) {
     return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
   };
-  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : " → " + text(to)));
+  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : std::string(arrow) + text(to)));
 }
 
 }  // namespace
@@ -281,13 +340,14 @@ void Course::Bin::Merge(const Bin& next) {
   least = std::min(least, next.least);
   greatest = std::max(greatest, next.greatest);
   count += next.count;
+  squared_error += (next.squared_error - squared_error) * next.count / count;
   cycle += (next.cycle - cycle) * next.count / count;
   value += (next.value - value) * next.count / count;
 }
 
-void Course::Add(std::size_t cycle, double value, std::size_t cycles) {
+void Course::Add(std::size_t cycle, double value, std::size_t cycles, double error) {
   const auto number = static_cast<double>(cycle);
-  const Bin one = {cycle, cycle + cycles - 1, number, value, value, value, 1};
+  const Bin one = {cycle, cycle + cycles - 1, number, value, value, value, 1, error * error};
   if (bins_.empty()) first_ = value;
   last_ = value;
   if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
@@ -304,17 +364,27 @@ void Course::Add(std::size_t cycle, double value, std::size_t cycles) {
 
 CourseDescription Describe(const Course& course) {
   const std::size_t rows = course.bins().size();
-  const std::size_t of_an_end = std::clamp<std::size_t>(rows / 2, 1, kOfAnEnd);
-  CourseDescription description;
-  if (rows == 0) return description;
-  description.from = LineThrough(course.bins().first(of_an_end)).level;
-  description.to = LineThrough(course.bins().last(of_an_end)).level;
+  CourseDescription description = {.from = course.first(), .to = course.last()};
   if (rows < 2 * kLeastBins) return description;
-  const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
-  const Noise noise = NoiseOf(course.bins());
-  if (!(noise.variance > 0)) return description;  // all are 0
-  std::vector<Segment> segments;
-  Divide(bins, noise, kDepth, segments);
+  const std::vector<Course::Bin> weighted = Weighted(course.bins());
+  const std::vector<Course::Bin> bins = WithoutOutliers(weighted);
+  const Divisions divisions(bins);
+  const double neighbours = NoiseWithin(divisions.Segments(1), weighted, 1).variance;
+  Noise noise;
+  std::size_t count = 0;
+  // Steps in more than half of the blocks count as scatter, unless the segments divide these.
+  for (std::size_t trial = 1; trial <= kMostSegments && divisions.Have(trial); ++trial) {
+    Noise within = NoiseWithin(divisions.Segments(trial), weighted);
+    within.variance = std::max(within.variance, neighbours);
+    const std::size_t called_for = divisions.CountFor(within);
+    if (within.variance > 0 && called_for > count && called_for >= trial) {
+      noise = within;
+      count = called_for;
+    }
+  }
+  if (count == 0) return description;  // all are 0, or too large for squares
+  std::vector<Segment> segments = divisions.Segments(count);
+  double squares = 0.0;
   std::vector<Change>& changes = description.changes;
   const Segment* before = nullptr;
   for (Segment& segment : segments) {
@@ -324,21 +394,42 @@ CourseDescription Describe(const Course& course) {
     const bool is_large = IsLarge(std::abs(segment.last() - segment.first()),
                                   kSmallestTrend * std::abs(line.level), noise);
     if (!(p_value < kChance && is_large)) line.product = 0;
+    squares += line.squares();
     std::optional<Change> step;
     if (before != nullptr) step = StepBetween(*before, segment, noise, bins.size());
-    if (step) changes.push_back(*step);
+    if (step) {
+      changes.push_back(*step);
+      segment.begin = step->first_cycle;
+    }
     if (before != nullptr && !step && before->line.slope() * line.slope() > 0) {
       changes.back().last_cycle = segment.bins.back().last_cycle;
       changes.back().to = segment.last();
       changes.back().p_value = std::min(changes.back().p_value, p_value);
     } else if (line.slope() != 0) {
-      changes.push_back({segment.bins.front().first_cycle, segment.bins.back().last_cycle,
-                         segment.first(), segment.last(), p_value});
+      changes.push_back({segment.begin, segment.bins.back().last_cycle, segment.first(),
+                         segment.last(), p_value});
     }
     before = &segment;
   }
-  if (description.changed()) {
+  const auto values = static_cast<double>(rows);
+  description.varies = rows >= kFewestToTest && squares > kOfNeighbours * neighbours * values &&
+                       squares > kOfAll * LineThrough(bins).square;
+  if (description.varies) {
+    changes.clear();
+    const auto [least, greatest] = std::ranges::minmax(bins, {}, &Course::Bin::value);
+    description.from = least.value;
+    description.to = greatest.value;
+  } else if (description.changed()) {
     description.settled_at = SettledAt(segments);
+    const auto without_scatter = [&](double value, double on_line, double weight) {
+      const double scatter = std::sqrt(noise.variance / weight);
+      return std::abs(value - on_line) < kOfScatter * scatter ? on_line : value;
+    };
+    const double size = course.bins().front().count;
+    description.from =
+        without_scatter(course.first(), segments.front().first(), weighted.front().count / size);
+    description.to =
+        without_scatter(course.last(), segments.back().last(), weighted.back().count / size);
   } else if (rows >= kFewestToTest) {
     description.from = description.to = LineThrough(course.bins()).level;
   }
@@ -360,12 +451,19 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
   for (Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
-    if (!value || !std::isfinite(*value) || fit.HasFlag(quantity.open_flag) ||
-        fit.HasFlag("not_converged") || fit.HasFlag("rows_missing")) {
+    if (!value || !std::isfinite(*value) ||
+        fit.HasFlag(std::string(quantity.parameter) + "_open") || fit.HasFlag("not_converged") ||
+        fit.HasFlag("rows_missing")) {
       continue;
     }
     ++evolution.known;
-    evolution.course.Add(fit.number, *value, fit.cycles);
+    // A quotient of a parameter has the parameter's relative error.
+    double error = 0.0;
+    if (!quantity.parameter.empty()) {
+      error = fit[std::string(quantity.parameter) + "_error"].value_or(0.0);
+      error *= std::abs(*value / *fit[quantity.parameter]);
+    }
+    evolution.course.Add(fit.number, *value, fit.cycles, std::isfinite(error) ? error : 0.0);
   }
 }
 
@@ -383,6 +481,7 @@ void Describe(std::vector<Evolution>& evolutions) {
     const std::size_t three_rows = kOfAnEnd * last / most;
     each.is_of_whole_test = !is_of_few && each.course.bins().back().last_cycle + three_rows > last;
     if (!is_of_few) continue;
+    each.description.varies = false;
     each.description.changes.clear();
     each.description.settled_at.reset();
   }
@@ -400,7 +499,9 @@ std::string Headline(std::span<const Evolution> evolutions) {
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
-    if (course.changed()) {
+    if (course.varies) {
+      text += "varies from " + FromTo(course.from, course.to, evolution.unit, " to ");
+    } else if (course.changed()) {
       const bool in_percent = quantity.name == "sigma";
       const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
       text += change.empty() ? FromTo(course.from, course.to, evolution.unit) : change;
@@ -418,6 +519,12 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions)
   constexpr std::size_t kMost = 10;
   std::vector<std::pair<double, std::string>> statements;  // with the relative sizes
   for (const Evolution& evolution : evolutions) {
+    if (const CourseDescription& course = evolution.description; course.varies) {
+      statements.emplace_back(
+          1 - course.from / course.to,
+          fmt::format("{}: varies from {}, with no lasting step or trend", evolution.quantity->name,
+                      FromTo(course.from, course.to, evolution.unit, " to ")));
+    }
     for (const auto& change : evolution.description.changes) {
       const auto& [first, last, from, to, p_value] = change;
       const std::string relative = RelativeChange(from, to);

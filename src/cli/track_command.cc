@@ -74,6 +74,7 @@ Json QuantityRows(const TrackedTest& test) {
         {"known", evolution.known},
         {"unit", evolution.unit},
         {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
+        {"varies", course.varies ? Json{course.from, course.to} : Json::array()},
         {"changes", report::ListOf(course.changes, [](const campaign::Change& change) -> Json {
            return {{"first_cycle", change.first_cycle},
                    {"last_cycle", change.last_cycle},

@@ -34,6 +34,10 @@ double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) 
   return cdf(complement(FisherF(numerator_degrees, degrees_of_freedom), f));
 }
 
+double QuantileOfF(double p_value, double numerator_degrees, double degrees_of_freedom) {
+  return quantile(complement(FisherF(numerator_degrees, degrees_of_freedom), p_value));
+}
+
 double PValueOfChiSquared(double x, double degrees_of_freedom) {
   return cdf(complement(ChiSquared(degrees_of_freedom), x));
 }

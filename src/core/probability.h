@@ -15,6 +15,8 @@ double PValueOfT(double t, double degrees_of_freedom);
 
 /// P(F(k, ν) > f)
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
+/// Returns the f whose PValueOfF() is this.
+double QuantileOfF(double p_value, double numerator_degrees, double degrees_of_freedom);
 
 /// P(χ²(k) > x)
 double PValueOfChiSquared(double x, double degrees_of_freedom);

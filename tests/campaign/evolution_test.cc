@@ -63,6 +63,14 @@ TEST(Headline, NeverFallsByMoreThanAHundredPercent) {
               ElementsAre("sigma: a step at cycle 9, 2.00 → -3.00 N/m, p = 1e-09"));
 }
 
+TEST(Headline, SaysWithinWhatAQuantityVaries) {
+  const std::vector<Evolution> evolutions = {
+      Of("slip_force", "N", {.from = 10.5, .to = 19.5, .varies = true})};
+  EXPECT_EQ(Headline(evolutions), "Tc varies from 10.5 to 19.5 N");
+  EXPECT_THAT(ChangeStatements(evolutions),
+              ElementsAre("slip_force: varies from 10.5 to 19.5 N, with no lasting step or trend"));
+}
+
 TEST(ChangeStatements, NameEachStepAndTrend) {
   EXPECT_THAT(ChangeStatements(RunIn()),
               ElementsAre("friction_coefficient: cycles 1 to 480, 0.352 → 0.600 (+70 %), p < 1e-12",
@@ -151,7 +159,8 @@ TEST(Evolutions, HoldEachQuantityOfACycleUnlessItIsOpen) {
   EXPECT_THAT(held({"not_converged"}), IsEmpty());
   EXPECT_THAT(held({"sigma_open"}), AllOf(SizeIs(6), Not(Contains(whole[3]))));
   EXPECT_THAT(held({"alpha_open"}), AllOf(SizeIs(7), Not(Contains(whole[5]))));
-  EXPECT_THAT(held({"slip_force_open"}), AllOf(SizeIs(7), Not(Contains(whole[1]))));
+  EXPECT_THAT(held({"slip_force_open"}),
+              AllOf(SizeIs(6), Not(Contains(whole[0])), Not(Contains(whole[1]))));
 }
 
 TEST(Headline, IsOfTheHalfGapWhereFewCyclesDetermineTheSlipForce) {
@@ -257,15 +266,29 @@ TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
   }
 }
 
-TEST(Describe, OfFewRowsIsFromTheMeanOfTheFirstToThatOfTheLast) {
+TEST(Describe, OfFewRowsIsFromTheFirstToTheLast) {
   Course course;
   for (std::size_t cycle = 1; cycle <= 7; ++cycle) course.Add(cycle, static_cast<double>(cycle));
-  EXPECT_DOUBLE_EQ(Describe(course).from, 2.0);
-  EXPECT_DOUBLE_EQ(Describe(course).to, 6.0);
-  Course two;
-  for (std::size_t cycle = 1; cycle <= 2; ++cycle) two.Add(cycle, static_cast<double>(cycle));
-  EXPECT_DOUBLE_EQ(Describe(two).from, 1.0);
-  EXPECT_DOUBLE_EQ(Describe(two).to, 2.0);
+  EXPECT_DOUBLE_EQ(Describe(course).from, 1.0);
+  EXPECT_DOUBLE_EQ(Describe(course).to, 7.0);
+}
+
+// A line through a run-in misses its first value by more than the scatter.
+TEST(Describe, IsFromTheFirstValueWhereTheLineMissesIt) {
+  Generator generator(3);
+  Course course;
+  for (std::size_t row = 0; row < 12; ++row) {
+    const double run_in = std::exp(-static_cast<double>(row) / 1.5);
+    course.Add(1 + 10 * row, 16.0 - 4 * run_in + 0.01 * Normal(generator), 10);
+  }
+  const CourseDescription description = Describe(course);
+  ASSERT_TRUE(description.changed());
+  EXPECT_GT(description.changes[0].from, 12.5);
+  EXPECT_EQ(description.from, course.first());
+  const CourseDescription step = Describe(
+      CourseOf(200, 7, [](std::size_t cycle) { return cycle < 101 ? kLevel : 1.1 * kLevel; }));
+  EXPECT_NEAR(step.from, kLevel, kNoise / 2) << "within its scatter, of all before the step";
+  EXPECT_NEAR(step.to, 1.1 * kLevel, kNoise / 2);
 }
 
 TEST(Describe, FindsAStepBetweenRowsOfSeveralCycles) {
@@ -414,6 +437,98 @@ TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
       EXPECT_NEAR(bump.changes[1].from, 1.5 * kLevel, 0.1 * kLevel);
       EXPECT_FALSE(bump.changes[0].is_step() || bump.changes[1].is_step());
     }
+  }
+}
+
+// No two lines describe it better than one.
+TEST(Describe, FindsStepsUpAndDownAgain) {
+  for (const std::size_t pieces : {2U, 3U, 4U, 6U, 8U}) {
+    const auto truth = [](std::size_t cycle) {
+      return (cycle - 1) / 25 % 2 == 0 ? kLevel : 0.8 * kLevel;
+    };
+    const CourseDescription description = Describe(CourseOf(25 * pieces, 5, truth, 0.0, 0.1));
+    ASSERT_THAT(description.changes, SizeIs(pieces - 1));
+    for (std::size_t k = 0; k < description.changes.size(); ++k) {
+      EXPECT_TRUE(description.changes[k].is_step());
+      EXPECT_EQ(description.changes[k].first_cycle, 25 * k + 26);
+    }
+  }
+}
+
+TEST(Describe, SaysThatAPeriodicCourseVaries) {
+  const auto period = [](double cycles, std::size_t count, double phi = 0.0) {
+    return Describe(CourseOf(
+        count, 3,
+        [=](std::size_t cycle) {
+          const double phase = 2 * std::numbers::pi * static_cast<double>(cycle) / cycles;
+          return kLevel * (1 + 0.1 * std::sin(phase));
+        },
+        phi));
+  };
+  for (const double cycles : {12.0, 20.0, 40.0}) {
+    const CourseDescription description = period(cycles, 200);
+    EXPECT_TRUE(description.varies) << cycles;
+    EXPECT_FALSE(description.changed());
+    EXPECT_NEAR(description.from, 0.9 * kLevel, 0.02 * kLevel);
+    EXPECT_NEAR(description.to, 1.1 * kLevel, 0.02 * kLevel);
+  }
+  EXPECT_TRUE(period(200.0, 5000).varies);
+  EXPECT_FALSE(period(200.0, 200).varies) << "three trends";
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    found += Describe(CourseOf(200, seed, Level, 0.6)).varies;
+  }
+  EXPECT_EQ(found, 0) << "correlated scatter";
+}
+
+TEST(Describe, HardlyEverFindsAChangeWhereTheScatterChanges) {
+  constexpr int kCourses = 100;
+  for (const double quiet : {0.2, 0.5, 0.8}) {
+    for (const double ratio : {0.1, 6.0}) {
+      int found = 0;
+      for (std::uint64_t seed = 1; seed <= kCourses; ++seed) {
+        Generator generator(seed);
+        Course course;
+        for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
+          const double noise = kNoise * (static_cast<double>(cycle) < 200 * quiet ? 1.0 : ratio);
+          course.Add(cycle, kLevel + noise * Normal(generator));
+        }
+        const CourseDescription description = Describe(course);
+        found += description.changed() || description.varies;
+      }
+      EXPECT_LE(found, kCourses / 20) << quiet << ' ' << ratio;
+    }
+  }
+}
+
+// As where the amplitude grows from where a cycle hardly determines the slip force.
+TEST(Describe, WeighsValuesByTheirStandardErrors) {
+  int found = 0;
+  constexpr int kCourses = 50;
+  const auto course = [](std::uint64_t seed, double step) {
+    Generator generator(seed);
+    Course values;
+    for (std::size_t cycle = 1; cycle <= 38; ++cycle) {
+      const double error = 0.01 + 3 * std::exp(-static_cast<double>(cycle) / 3);
+      const double truth = cycle <= 25 ? kLevel : kLevel * (1 + step);
+      values.Add(cycle, truth + error * Normal(generator), 1, error);
+    }
+    return values;
+  };
+  for (std::uint64_t seed = 1; seed <= kCourses; ++seed) {
+    found += Describe(course(seed, 0.0)).changed();
+    const CourseDescription step = Describe(course(seed, 0.02));
+    ASSERT_THAT(step.changes, SizeIs(1)) << seed;
+    EXPECT_EQ(step.changes[0].first_cycle, 26U);
+  }
+  EXPECT_LE(found, kCourses / 20);
+}
+
+TEST(Describe, SettlesAtTheCycleAndNotAtTheBinOfAStep) {
+  for (const std::size_t place : {3201, 3204, 3334}) {
+    const CourseDescription description = Describe(CourseOf(
+        5000, 3, [&](std::size_t cycle) { return cycle < place ? kLevel : 0.9 * kLevel; }));
+    EXPECT_EQ(description.settled_at, place);
   }
 }
 

@@ -26,6 +26,7 @@ TEST(Probability, FOfOneDegreeIsTheSquareOfT) {
     EXPECT_NEAR(PValueOfF(x * x, 1, 2), 1 - x / std::sqrt(2 + x * x), kRounding);
   }
   EXPECT_EQ(PValueOfF(0, 1, 7), 1);
+  EXPECT_NEAR(QuantileOfF(std::pow(1.6, -5), 2, 10), 3, 3 * kRounding);
 }
 
 TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {

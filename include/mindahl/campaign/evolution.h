@@ -24,6 +24,7 @@ class Course {
     double least = 0.0;     ///< smallest of its values
     double greatest = 0.0;  ///< likewise
     double count = 0.0;
+    double squared_error = 0.0;  ///< mean square of their standard errors
 
     /// Takes in the bin that comes after it.
     void Merge(const Bin& next);
@@ -34,7 +35,8 @@ class Course {
   /// @param cycle   its number, larger than the last
   /// @param value   finite
   /// @param cycles  that the value is of, from that one on
-  void Add(std::size_t cycle, double value, std::size_t cycles = 1);
+  /// @param error   standard error of the value, >= 0; 0 where it has none
+  void Add(std::size_t cycle, double value, std::size_t cycles = 1, double error = 0.0);
 
   [[nodiscard]] std::span<const Bin> bins() const { return bins_; }
   // The first and the last value that was added; of at least one.
@@ -64,31 +66,38 @@ struct Change {
 };
 
 struct CourseDescription {
-  /// Means of the first three bins and of the last three; without a
-  /// change that of all.
+  /// First and last value, or of their segments' lines where the values lie about these by their
+  /// scatter; without a change the mean of all; the least and the greatest where it varies.
   double from = 0.0;
   double to = 0.0;
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
   /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
   std::vector<Change> changes = {};  ///< in their order
+  /// True if neighbours go together where segments miss the values, as of a periodic time history.
+  bool varies = false;
 
   [[nodiscard]] bool changed() const { return !changes.empty(); }
 };
 
-/// Divides a time history into straight segments: in two where the F test of two lines against one
-/// rejects the one with a chance below 1 %, corrected for the number of places; each part likewise,
-/// up to eight segments. The bin between two is in neither line: it may hold the values of both.
-/// The noise that this is judged by is that of neighbouring values, whatever the lines miss, but no
-/// less than 0.1 % of the values. Steps are between segments, trends along one by Student's test of
-/// its slope. No value is stated that no cycle had.
+/// Divides a time history into straight segments: those that miss the least squares, up to eight,
+/// and as many as F tests of one more against one less call for with a chance below 1 %, corrected
+/// for the number of places. The bin between two is in neither line: it may hold the values of
+/// both. Bins weigh by their standard errors, the scatter beyond these, and that of their
+/// neighbours. The noise that this is judged by is that of neighbouring values, whatever the lines
+/// miss, but no less than 0.1 % of the values. Steps are between segments, trends along one by
+/// Student's test of its slope. No value is stated that no cycle had. Where the segments leave more
+/// than a quarter of all squares, and ten times what neighbours differ by, it varies, without
+/// changes.
+/// Cost: with the square of the number of bins.
 CourseDescription Describe(const Course& course);
 
 /// Describes a quantity whose time history is reported.
 struct TrackedQuantity {
-  std::string_view name;       ///< column of the table of cycles
-  std::string_view symbol;     ///< "μ"; "" where the headline does not name it
-  std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
+  std::string_view name;    ///< column of the table of cycles
+  std::string_view symbol;  ///< "μ"; "" where the headline does not name it
+  /// Column of the fitted parameter that determines it; "" if none.
+  std::string_view parameter;
 };
 
 /// The time history of a quantity and what is said of it.
