@@ -41,7 +41,9 @@ struct TrackedTest {
   loop::ReversalGate gate = {};
   std::size_t fits = 0;
   std::map<std::string, std::size_t, std::less<>> flags = {};  // how many fits have each
-  double energy = 0.0;                                         // [J] dissipated
+  std::size_t cycles_without = 0;         // cycles that have no fit or are no loop
+  std::size_t last_with = 0;              // last cycle that has one and is one
+  double energy = 0.0;                    // [J] dissipated
   std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
   std::vector<Evolution> evolutions = {};
   std::vector<std::string> notes = {};  // what was assumed, one sentence each
@@ -53,7 +55,21 @@ struct TrackedTest {
     if (is_loop) energy += static_cast<double>(fit.cycles) * fit["energy"].value_or(0.0);
     ++fits;
     for (const std::string& flag : fit.flags) ++flags[flag];
+    const bool is_without = fit.HasFlag("not_converged") || fit.HasFlag("no_loop");
+    if (is_without) {
+      cycles_without += fit.cycles;
+    } else {
+      last_with = fit.number + fit.cycles - 1;
+    }
     campaign::AddTo(evolutions, fit);
+  }
+  /// Returns the test in one line, with the cycles that say nothing of it.
+  [[nodiscard]] std::string Headline() const {
+    std::string text = campaign::Headline(evolutions);
+    if (cycles_without == 0) return text;
+    text += fmt::format("{}{} of {} cycles without a fit or a loop", text.empty() ? "" : "; ",
+                        cycles_without, cycles);
+    return last_with == cycles ? text : text + fmt::format(", all from cycle {} on", last_with + 1);
   }
   /// False where no fit converged.
   [[nodiscard]] bool established() const {
@@ -99,7 +115,7 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
                           {"fits", test.fits},
                           {"flags", test.flags},
                           {"accumulated_energy", test.energy},
-                          {"headline", campaign::Headline(test.evolutions)},
+                          {"headline", test.Headline()},
                           {"changes", campaign::ChangeStatements(test.evolutions)},
                           {"quantities", quantities},
                           {"notes", test.notes}});
@@ -132,8 +148,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
 }
 
 std::string ToText(const TrackedTest& test, const Json& quantities) {
-  std::string text =
-      fmt::format("{}\n{}\n", campaign::Headline(test.evolutions), fmt::join(Facts(test), "\n"));
+  std::string text = fmt::format("{}\n{}\n", test.Headline(), fmt::join(Facts(test), "\n"));
   if (!test.flags.empty()) text += '\n' + report::TableText(FlagRows(test));
   text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
@@ -153,12 +168,15 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
         "Dashed lines are steps beyond chance, and where the quantity settled.", panel);
   }
   const bool is_failed = !test.established();
+  const bool is_steady = changes.empty() && test.cycles_without == 0;
   return report::PageHtml(
       fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
       (is_failed ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
-                 : report::VerdictHtml(changes.empty() ? "good" : "poor",
-                                       changes.empty() ? "steady" : "changed",
-                                       campaign::Headline(test.evolutions)) +
+                 : report::VerdictHtml(is_steady ? "good" : "poor",
+                                       is_steady         ? "steady"
+                                       : changes.empty() ? "in part"
+                                                         : "changed",
+                                       test.Headline()) +
                        report::ListHtml(changes)) +
           report::SectionHtml(
               "Over the test",

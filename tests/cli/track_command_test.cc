@@ -216,6 +216,28 @@ TEST_F(TrackCommand, NotesAGateThatIsNotCertain) {
   EXPECT_THAT(notes(JsonOf(Track("whole.csv"))), IsEmpty());
 }
 
+TEST_F(TrackCommand, SaysInTheFirstLineThatCyclesHaveNoFit) {
+  const Table rows = Rows(Whole());
+  std::vector<std::string> lines = Lines(text_);
+  const auto make_constant = [&](std::size_t first_cycle, std::size_t end_cycle) {
+    for (std::size_t k = std::stoul(rows[first_cycle][1]); k < std::stoul(rows[end_cycle][1]);
+         ++k) {
+      lines[k] = lines[k].substr(0, lines[k].rfind(',')) + ",3.2";
+    }
+  };
+  make_constant(30, 33);
+  Write("dead.csv", Joined(lines));
+  const Words track = Track("table.csv", "dead.csv") + "--overwrite";
+  EXPECT_THAT(JsonOf(track)["headline"].get<std::string>(),
+              EndsWith("; 3 of 200 cycles without a fit or a loop"));
+  make_constant(91, 100);
+  lines.resize(std::stoul(rows[100][1]));
+  Write("dead.csv", Joined(lines));
+  EXPECT_THAT(Lines(Done(track + "--report" + Path("page.html")).out)[0],
+              EndsWith("; 11 of 98 cycles without a fit or a loop, all from cycle 91 on"));
+  EXPECT_THAT(ContentOf("page.html"), HasSubstr("in part"));
+}
+
 // A spike of the displacement turns it, and makes two pieces of a cycle with ten times its energy.
 TEST_F(TrackCommand, CountsNoEnergyOfPiecesOfACycle) {
   const json whole = JsonOf(Track("clean.csv"));
