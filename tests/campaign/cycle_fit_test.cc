@@ -216,6 +216,24 @@ TEST(CycleFitter, FlagsWhatIsWrongWithACycle) {
   }
 }
 
+// Two cycles share the sample at which they turn, which lies between neighbours in the record.
+TEST(CycleFitter, LeavesOutAGlitchAtEitherEnd) {
+  const Cycle clean = FirstCycle();
+  const CycleFit expected = CycleFitter({}).Fit(clean);
+  const std::size_t last = clean.record.size() - 1;
+  for (const std::size_t place : {std::size_t{0}, std::size_t{1}, last - 1, last}) {
+    for (const double off : {-40.0, 40.0}) {
+      Cycle cycle = clean;
+      cycle.record.force[place] += off;
+      const CycleFit fit = CycleFitter({}).Fit(cycle);
+      EXPECT_THAT(fit.flags, ElementsAre("glitches")) << place;
+      EXPECT_NEAR(*fit["slip_force"], *expected["slip_force"], *expected["slip_force_error"]);
+      EXPECT_NEAR(*fit["sigma"], *expected["sigma"], *expected["sigma_error"]);
+      EXPECT_NEAR(*fit["half_gap"], *expected["half_gap"], 0.01 * *expected["half_gap"]);
+    }
+  }
+}
+
 TEST(RequireFit, RefusesOptionsThatNoCycleCanBeFittedWith) {
   loop::Record head = TestRecord(4);
   EXPECT_NO_THROW(RequireFit(head, {}));

@@ -55,7 +55,8 @@ struct PreparationOptions {
   /// law is a bias.
   std::optional<double> displacement_noise{};
 
-  /// The first sample of each record is a turning point, as of a cycle that was cut out.
+  /// The first sample of each record is a turning point, as of a cycle that was cut out; glitches
+  /// are then also found at its ends, which go on with each other.
   bool begins_at_turn = false;
 
   /// Samples under another load [N] do not count; such samples, and those below, make history.
