@@ -213,6 +213,12 @@ class RoleAssigner {
       taken_[ReadCovariate(covariate, table_)] = true;
     }
     if (has_load) TakeBest(Role::kNormalLoad);
+    Quantity& load = Of(Role::kNormalLoad);
+    if (!load.terms.empty() && load.is_plain() && ColumnOf(load.role).greatest < 0) {
+      load.terms.front().weight = -1.0;
+      Note("normal load {} is negative throughout: its magnitude is taken",
+           table_.Label(load.first_column()));
+    }
     TakeLeft();
     for (const std::size_t k : {0U, 1U}) {
       if (is_found[k]) RequireMoving(kPair[k], kPair[1 - k]);
@@ -268,11 +274,8 @@ class RoleAssigner {
     if (role <= Role::kForce && of.goes_to_and_fro) NoteThatItMoves(*best, role);
     Take(*best, role);
     const std::size_t next = *best + 1;
-    if (role == Role::kNormalLoad && of.greatest < 0) {
-      Of(role).terms.front().weight = -1.0;
-      Note("normal load {} is negative throughout: its magnitude is taken", table_.Label(*best));
-    } else if (role == Role::kTime && next < taken_.size() && of.unit == "sec" &&
-               LowerCase(table_.columns[next].name).ends_with("nanosec")) {
+    if (role == Role::kTime && next < taken_.size() && of.unit == "sec" &&
+        LowerCase(table_.columns[next].name).ends_with("nanosec")) {
       Of(role).terms.push_back({next, 1e-9});  // of the same stamp
       Of(role).given_unit = "s";
       taken_[next] = true;

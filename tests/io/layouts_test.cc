@@ -212,10 +212,18 @@ TEST(Load, IsLeftOutWhereNoneIsAskedFor) {
   EXPECT_TRUE(Read(text, columns).record.normal_load.empty());
 }
 
-TEST(Load, ThatIsNegativeIsTakenAsItsMagnitude) {
-  const RecordFile file = Read("Normal force [N],F [N],x [mm]\n-50,1,1\n-51,2,2\n-50,1,1\n");
-  EXPECT_EQ(file.record.normal_load, (Numbers{50, 51, 50}));
-  EXPECT_THAT(file.notes.back(), HasSubstr("is negative throughout: its magnitude is taken"));
+TEST(Load, ThatIsNegativeIsTakenAsItsMagnitudeHoweverItIsFound) {
+  const char* text = "Normal force [N],F [N],x [mm]\n-50,1,1\n-51,2,2\n-50,1,1\n";
+  for (const char* named : {"", "Normal force", "1 [N]"}) {
+    RecordColumns columns;
+    columns.normal_load = named;
+    const RecordFile file = Read(text, columns);
+    EXPECT_EQ(file.record.normal_load, (Numbers{50, 51, 50})) << named;
+    EXPECT_THAT(file.notes.back(), HasSubstr("is negative throughout: its magnitude is taken"));
+  }
+  RecordColumns scaled;  // a factor says the sign
+  scaled.normal_load = "#1*2 [N]";
+  EXPECT_EQ(Read(text, scaled).record.normal_load, (Numbers{-100, -102, -100}));
 }
 
 TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
