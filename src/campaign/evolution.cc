@@ -377,12 +377,12 @@ CourseDescription Describe(const Course& course) {
     Noise within = NoiseWithin(divisions.Segments(trial), weighted);
     within.variance = std::max(within.variance, neighbours);
     const std::size_t called_for = divisions.CountFor(within);
-    if (within.variance > 0 && called_for > count && called_for >= trial) {
+    if (std::isnormal(within.variance) && called_for > count && called_for >= trial) {
       noise = within;
       count = called_for;
     }
   }
-  if (count == 0) return description;  // all are 0, or too large for squares
+  if (count == 0) return description;  // all are 0, or their squares are no doubles
   std::vector<Segment> segments = divisions.Segments(count);
   double squares = 0.0;
   std::vector<Change>& changes = description.changes;

@@ -555,6 +555,17 @@ TEST(Describe, DoesNotDependOnTheUnit) {
   }
 }
 
+TEST(Describe, FindsNoChangeOfValuesWhoseSquaresAreNoDoubles) {
+  for (const double scale : {1e-158, 1e306}) {
+    Course course;
+    for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
+      course.Add(cycle, scale * (cycle <= 60 ? 5.0 : 4.0));
+    }
+    EXPECT_FALSE(Describe(course).changed()) << scale;
+    EXPECT_EQ(Describe(course).to, 4.0 * scale);
+  }
+}
+
 TEST(Describe, OfValuesWithoutNoiseIsThatOfTheValues) {
   Course course;
   for (std::size_t cycle = 1; cycle <= 100; ++cycle) course.Add(cycle, cycle <= 60 ? 5.0 : 4.0);
