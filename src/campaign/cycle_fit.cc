@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
@@ -100,6 +101,30 @@ Value CellValue(std::string_view cell) {
   throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
+/// Draws lines over glitches next to the ends of a cycle, where none is found in the cycle alone:
+/// the ends go on with each other, as in the cycle read twice.
+/// @returns true where there was one
+bool RepairEnds(loop::Record& cycle) {
+  constexpr std::size_t kNearEnd = 2;  // samples, in which no spike is found
+  const std::size_t size = cycle.size();
+  const auto twice = [](const std::vector<double>& values) {
+    std::vector<double> read = values;
+    read.insert(read.end(), values.begin(), values.end());
+    return read;
+  };
+  const std::vector<double> displacement = twice(cycle.displacement);
+  const std::vector<double> force = twice(cycle.force);
+  const loop::Interpolated found = loop::FindAndInterpolate({displacement, force});
+  bool is_repaired = false;
+  for (const std::size_t i : found.glitches) {
+    if (i + kNearEnd < size || i >= size + kNearEnd) continue;
+    if (!found.displacement.empty()) cycle.displacement[i % size] = found.displacement[i];
+    if (!found.force.empty()) cycle.force[i % size] = found.force[i];
+    is_repaired = true;
+  }
+  return is_repaired;
+}
+
 }  // namespace
 
 std::span<const CycleFlag> CycleFlags() { return kFlags; }
@@ -115,7 +140,9 @@ void RequireFit(const loop::RecordView& head, const FitOptions& options) {
 CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
     : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
 
-CycleFit CycleFitter::Fit(const Cycle& cycle) {
+CycleFit CycleFitter::Fit(const Cycle& read) {
+  Cycle cycle = read;
+  const bool is_repaired = RepairEnds(cycle.record);
   const loop::Record& record = cycle.record;
   CycleFit fit{.number = cycle.number,
                .first_line = cycle.first_line,
@@ -140,7 +167,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   }
   if (!result->converged) fit.flags.emplace_back("not_converged");
   const identification::RecordFit& fitted = result->records.front();
-  if (!fitted.glitches.empty()) fit.flags.emplace_back("glitches");
+  if (is_repaired || !fitted.glitches.empty()) fit.flags.emplace_back("glitches");
   if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
   FillFacts(record, FactsOf(cycle, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign

@@ -45,37 +45,10 @@ void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
   prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
 }
 
-/// Finds glitches also at the ends of a cycle that was cut out, which go on with each other.
-Interpolated FindAndInterpolateCycle(const RecordView& cycle) {
-  constexpr std::size_t kBeyond = 24;  // samples about a spike that it is compared with
-  const std::size_t beyond = std::min(kBeyond, cycle.size() - 1);
-  const auto go_on = [&](std::span<const double> values) {
-    const auto before = values.last(beyond + 1).first(beyond);
-    const auto after = values.subspan(1, beyond);
-    std::vector<double> longer(before.begin(), before.end());
-    longer.insert(longer.end(), values.begin(), values.end());
-    longer.insert(longer.end(), after.begin(), after.end());
-    return longer;
-  };
-  const std::vector<double> displacement = go_on(cycle.displacement);
-  const std::vector<double> force = go_on(cycle.force);
-  const Interpolated found = FindAndInterpolate({displacement, force});
-  const auto own = [&](const std::vector<double>& values) {
-    const auto cut = std::span(values).subspan(values.empty() ? 0 : beyond);
-    return std::vector<double>(cut.begin(), cut.end() - (values.empty() ? 0 : beyond));
-  };
-  Interpolated interpolated = {{}, own(found.displacement), own(found.force)};
-  for (const std::size_t i : found.glitches) {
-    if (i >= beyond && i < beyond + cycle.size()) interpolated.glitches.insert(i - beyond);
-  }
-  return interpolated;
-}
-
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
-void LeaveOutGlitches(PreparedRecord& prepared, bool is_cycle) {
+void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
-  Interpolated interpolated =
-      is_cycle ? FindAndInterpolateCycle(prepared.record) : FindAndInterpolate(prepared.record);
+  Interpolated interpolated = FindAndInterpolate(prepared.record);
   prepared.glitches.assign(interpolated.glitches.begin(), interpolated.glitches.end());
   for (const std::size_t i : prepared.glitches) prepared.counts[i] = 0;
   prepared.interpolated_displacement = std::move(interpolated.displacement);
@@ -228,7 +201,7 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records.emplace_back();
     prepared.record = records[r];
-    LeaveOutGlitches(prepared, options.begins_at_turn);
+    LeaveOutGlitches(prepared);
     FindTurns(prepared, options);
     Smooth(prepared, options);
     LeaveOut(prepared, r, options);

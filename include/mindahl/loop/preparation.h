@@ -55,8 +55,7 @@ struct PreparationOptions {
   /// law is a bias.
   std::optional<double> displacement_noise{};
 
-  /// The first sample of each record is a turning point, as of a cycle that was cut out; glitches
-  /// are then also found at its ends, which go on with each other.
+  /// The first sample of each record is a turning point, as of a cycle that was cut out.
   bool begins_at_turn = false;
 
   /// Samples under another load [N] do not count; such samples, and those below, make history.
