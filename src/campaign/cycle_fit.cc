@@ -101,9 +101,9 @@ Value CellValue(std::string_view cell) {
   throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
-/// Draws lines over glitches next to the ends of a cycle, where none is found in the cycle alone:
-/// the ends go on with each other, as in the cycle read twice.
-/// @returns true where there was one
+/// Interpolates glitches in the first and the last two samples of a cycle, where none is found in
+/// the cycle alone. They are looked for where two copies of the cycle follow on each other.
+/// @returns true if there was one
 bool RepairEnds(loop::Record& cycle) {
   constexpr std::size_t kNearEnd = 2;  // samples, in which no spike is found
   const std::size_t size = cycle.size();

@@ -198,7 +198,10 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     const bool is_told =
         fit.WidestRecord().reversals.size() > 1 && !loop::HasSlipped(fit.WidestRecord().facts) &&
         leaves_more(is_masing ? fit : *other) && !leaves_more(is_masing ? *other : fit);
-    if (!is_told) return choice;
+    if (!is_told) {
+      choice.delta_aicc = delta;
+      return choice;
+    }
   } else if (!past.empty()) {
     FitOptions same = options;
     StartFrom(fit, same);

@@ -236,7 +236,15 @@ class Writer {
     add("Tc", "slip_force", choice->law.slip_force);
     if (!values.empty()) values += ')';
     if (!choice->decided) {
-      Add("law", fmt::format("{} fits as well{}", laws, values));
+      const double delta = choice->delta_aicc.value_or(0.0);
+      std::string condition;
+      if (std::abs(delta) >= report_.options.thresholds.undecided) {
+        condition = fmt::format(", {} the first stroke began at a turn that is not recorded",
+                                delta < 0 ? "unless" : "if");
+      }
+      const bool is_better = !condition.empty() && delta < 0;
+      Add("law",
+          fmt::format("{} fits {}{}{}", laws, is_better ? "better" : "as well", values, condition));
     } else if (choice->preferred == choice->alternative) {
       Add("law",
           fmt::format("{} fits better{}: --model {}", laws, values, choice->alternative->name),

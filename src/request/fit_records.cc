@@ -126,6 +126,7 @@ void WithdrawPreference(FitResult& fit) {
   if (!PrefersOther(fit)) return;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
+  fit.law_choice->delta_aicc.reset();
   std::erase_if(fit.findings,
                 [](const identification::Finding& finding) { return finding.code == "other_law"; });
 }
@@ -276,11 +277,9 @@ bool TryFit(const FitRequest& request, std::span<const Record> records, const Fi
 /// that where it leaves no more than these and flicker of a count: the noise is then where the
 /// steps are.
 std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request,
-                                                       const FitOptions& options,
                                                        std::span<const Record> records,
                                                        const FitResult& fit, FitResult& found) {
   FitOptions tried = MakeFitOptions(request);
-  tried.model = options.model;
   tried.preparation.excitation = loop::Channel::kForce;
   constexpr double kOfSteps = 0.6;  // √(1/12 + 1/4) of one
   if (!TryFit(request, records, tried, found) ||
@@ -315,7 +314,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   }
   if (fit.EncoderStep() > options.thresholds.coarse_step * fit.WidestRecord().facts.amplitude) {
     if (is_cut) return std::nullopt;
-    return TryNoiseInDisplacement(request, options, records, fit, found);
+    return TryNoiseInDisplacement(request, records, fit, found);
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   FitOptions fitted = options;

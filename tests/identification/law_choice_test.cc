@@ -171,6 +171,7 @@ TEST(LawChoice, IsNotMadeByAFirstStrokeOfUnknownPast) {
     const FitResult fit = FitOne(record);
     ASSERT_TRUE(fit.law_choice) << state;
     EXPECT_FALSE(fit.law_choice->decided) << state;
+    EXPECT_LT(*fit.law_choice->delta_aicc, -10.0) << state;
     EXPECT_EQ(fit.model->name, "mindlin-dahl") << state;
     EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << state;
     const ParameterEstimate& sigma = *fit.Find("sigma");

@@ -212,6 +212,10 @@ TEST(Answer, SaysOneThingOfTheLaw) {
   choice.law = {6e7, 0.5, 41.0};
   input.fit.law_choice = choice;
   EXPECT_EQ(LineOf(input, "law"), "Masing's; Dahl's own fits as well (σ 60 N/µm, Tc 41 N)");
+  input.fit.law_choice->delta_aicc = -64.0;
+  EXPECT_EQ(LineOf(input, "law"),
+            "Masing's; Dahl's own fits better (σ 60 N/µm, Tc 41 N), unless the first stroke began "
+            "at a turn that is not recorded");
   input.fit.law_choice->decided = true;
   input.fit.law_choice->preferred = input.fit.model;
   EXPECT_EQ(LineOf(input, "law"), "Masing's, not Dahl's own");

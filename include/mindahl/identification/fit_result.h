@@ -31,6 +31,7 @@ struct LawChoice {
   models::BranchLaw law;  ///< its σ, α, Tc
   /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
   /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
+  /// Of laws that are not distinguished, large where the first stroke alone would tell them.
   std::optional<double> delta_aicc;
 
   [[nodiscard]] bool prefers_alternative() const { return decided && preferred == alternative; }
