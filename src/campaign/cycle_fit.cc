@@ -35,7 +35,7 @@ constexpr std::array kFlags = {
     CycleFlag{"rows_missing",
               "time jumps by a quarter of a cycle or more: what turned there is not seen"},
     CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
-    CycleFlag{"glitches", "spikes or dropouts were left out"},
+    CycleFlag{"glitches", "spikes or dropouts were left out or interpolated"},
 };
 
 FitOptions OfSteadyCycles(FitOptions options) {
@@ -101,25 +101,29 @@ Value CellValue(std::string_view cell) {
   throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
-/// Interpolates glitches in the first and the last two samples of a cycle, where none is found in
-/// the cycle alone. They are looked for where two copies of the cycle follow on each other.
+/// Interpolates glitches in the first and the last two samples of a cycle, where
+/// FindAndInterpolate() looks for none. The halves are exchanged, so that the ends meet in the
+/// middle.
 /// @returns true if there was one
 bool RepairEnds(loop::Record& cycle) {
-  constexpr std::size_t kNearEnd = 2;  // samples, in which no spike is found
-  const std::size_t size = cycle.size();
-  const auto twice = [](const std::vector<double>& values) {
-    std::vector<double> read = values;
-    read.insert(read.end(), values.begin(), values.end());
-    return read;
+  constexpr std::size_t kNearEnd = 2;  // samples
+  const std::size_t half = cycle.size() / 2;
+  const auto exchanged = [&](const std::vector<double>& values) {
+    std::vector<double> halves(values.size());
+    std::ranges::rotate_copy(values, values.begin() + static_cast<std::ptrdiff_t>(half),
+                             halves.begin());
+    return halves;
   };
-  const std::vector<double> displacement = twice(cycle.displacement);
-  const std::vector<double> force = twice(cycle.force);
+  const std::vector<double> displacement = exchanged(cycle.displacement);
+  const std::vector<double> force = exchanged(cycle.force);
   const loop::Interpolated found = loop::FindAndInterpolate({displacement, force});
+  const std::size_t seam = cycle.size() - half;
   bool is_repaired = false;
   for (const std::size_t i : found.glitches) {
-    if (i + kNearEnd < size || i >= size + kNearEnd) continue;
-    if (!found.displacement.empty()) cycle.displacement[i % size] = found.displacement[i];
-    if (!found.force.empty()) cycle.force[i % size] = found.force[i];
+    if (i + kNearEnd < seam || i >= seam + kNearEnd) continue;
+    const std::size_t place = (i + half) % cycle.size();
+    if (!found.displacement.empty()) cycle.displacement[place] = found.displacement[i];
+    if (!found.force.empty()) cycle.force[place] = found.force[i];
     is_repaired = true;
   }
   return is_repaired;

@@ -17,13 +17,15 @@ namespace mindahl::campaign {
 
 namespace {
 
-constexpr double kChance = 0.01;           // of a change, or of a trend, where there is none
-constexpr double kSmallestStep = 0.02;     // [-] of the value before it
-constexpr double kSmallestTrend = 0.01;    // [-] of the segment's mean
-constexpr double kOfScatter = 4;           // [standard deviations] enough whatever the size
-constexpr double kSettled = 0.05;          // [-] of the whole change
-constexpr double kOfNeighbours = 10;       // [their variances] that scatter about segments has not
-constexpr double kOfAll = 0.25;            // [-] of the variance of all values, likewise
+constexpr double kChance = 0.01;         // of a change, or of a trend, where there is none
+constexpr double kSmallestStep = 0.02;   // [-] of the value before it
+constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
+constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
+constexpr double kSettled = 0.05;        // [-] of the whole change
+// A variance of residuals above so many times that of neighbours, and above this fraction of that
+// of all values, is no scatter.
+constexpr double kOfNeighbours = 10;
+constexpr double kOfAll = 0.25;
 constexpr std::size_t kLeastBins = 4;      // of a segment: two beyond a line
 constexpr std::size_t kFewestToTest = 20;  // rows in which no change is found are said to have none
 constexpr std::size_t kOfAnEnd = 3;        // cycles that show how a test ends
@@ -104,7 +106,9 @@ std::vector<Course::Bin> Weighted(Bins bins) {
   const double least = kExact * kExact * usual;
   if (!(usual > 0)) return weighted;
   for (Course::Bin& bin : weighted) {
-    bin.count *= usual / std::max(least, usual - error + bin.squared_error);
+    // A value without an error of its own has the usual one.
+    const double own = bin.squared_error > 0 ? bin.squared_error : error;
+    bin.count *= usual / std::max(least, usual - error + own);
   }
   const std::vector<double> squares = SquaredBends(weighted);
   const std::size_t window =
@@ -175,9 +179,9 @@ Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t long
   return {std::max(VarianceOf(squares), exact), static_cast<double>(squares.size()) / 2};
 }
 
-/// Finds the segments of bins whose lines miss the least squares, for each number of segments. The
-/// bin between two is in the line of neither, as what changes within a cycle makes it a mixture of
-/// both.
+/// Finds the segments of bins whose lines have the least sum of squares, for each number of
+/// segments. The bin between two is in the line of neither, as what changes within a cycle makes it
+/// a mixture of both.
 class Divisions {
  public:
   explicit Divisions(Bins bins) : bins_(bins) {
@@ -323,14 +327,27 @@ std::string RelativeChange(double from, double to) {
 }
 
 /// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
-std::string FromTo(double from, double to, const std::string& unit,
-                   std::string_view arrow = " → ") {
+std::string FromTo(double from, double to, const std::string& unit) {
   const double largest = std::max(std::abs(from), std::abs(to));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
   const auto text = [&](double value) {
     return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
   };
-  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : std::string(arrow) + text(to)));
+  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : " → " + text(to)));
+}
+
+/// Returns "10.5 to 19.5 N", with as many digits as tell the ends apart.
+std::string Range(double least, double greatest, const std::string& unit) {
+  const double largest = std::max(std::abs(least), std::abs(greatest));
+  const report::ScaledUnit scaled = report::UnitFor(unit, largest);
+  const double error = std::min(largest / 10, greatest - least) / scaled.factor;
+  return scaled.Behind(report::RoundedTo(error, least / scaled.factor) + " to " +
+                       report::RoundedTo(error, greatest / scaled.factor));
+}
+
+/// Returns the size of a change over the larger of its ends.
+double RelativeSize(double from, double to) {
+  return std::abs(to - from) / std::max(std::abs(from), std::abs(to));
 }
 
 }  // namespace
@@ -425,13 +442,12 @@ CourseDescription Describe(const Course& course) {
       const double scatter = std::sqrt(noise.variance / weight);
       return std::abs(value - on_line) < kOfScatter * scatter ? on_line : value;
     };
-    const double size = course.bins().front().count;
-    description.from =
-        without_scatter(course.first(), segments.front().first(), weighted.front().count / size);
-    description.to =
-        without_scatter(course.last(), segments.back().last(), weighted.back().count / size);
+    description.from = without_scatter(course.first(), segments.front().first(),
+                                       weighted.front().count / course.bins().front().count);
+    description.to = without_scatter(course.last(), segments.back().last(),
+                                     weighted.back().count / course.bins().back().count);
   } else if (rows >= kFewestToTest) {
-    description.from = description.to = LineThrough(course.bins()).level;
+    description.from = description.to = LineThrough(weighted).level;
   }
   return description;
 }
@@ -459,7 +475,7 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
     ++evolution.known;
     // A quotient of a parameter has the parameter's relative error.
     double error = 0.0;
-    if (!quantity.parameter.empty()) {
+    if (!quantity.parameter.empty() && fit[quantity.parameter]) {
       error = fit[std::string(quantity.parameter) + "_error"].value_or(0.0);
       error *= std::abs(*value / *fit[quantity.parameter]);
     }
@@ -476,14 +492,10 @@ void Describe(std::vector<Evolution>& evolutions) {
     last = std::max(last, each.course.bins().back().last_cycle);
   }
   for (Evolution& each : evolutions) {
-    each.description = Describe(each.course);
     const bool is_of_few = 2 * each.known < most;
+    if (!is_of_few) each.description = Describe(each.course);
     const std::size_t three_rows = kOfAnEnd * last / most;
     each.is_of_whole_test = !is_of_few && each.course.bins().back().last_cycle + three_rows > last;
-    if (!is_of_few) continue;
-    each.description.varies = false;
-    each.description.changes.clear();
-    each.description.settled_at.reset();
   }
   std::ranges::stable_partition(evolutions, &Evolution::is_of_whole_test);
 }
@@ -500,7 +512,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
     if (is_force && std::exchange(has_force, true)) continue;
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     if (course.varies) {
-      text += "varies from " + FromTo(course.from, course.to, evolution.unit, " to ");
+      text += "varies from " + Range(course.from, course.to, evolution.unit);
     } else if (course.changed()) {
       const bool in_percent = quantity.name == "sigma";
       const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
@@ -521,15 +533,15 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions)
   for (const Evolution& evolution : evolutions) {
     if (const CourseDescription& course = evolution.description; course.varies) {
       statements.emplace_back(
-          1 - course.from / course.to,
+          RelativeSize(course.from, course.to),
           fmt::format("{}: varies from {}, with no lasting step or trend", evolution.quantity->name,
-                      FromTo(course.from, course.to, evolution.unit, " to ")));
+                      Range(course.from, course.to, evolution.unit)));
     }
     for (const auto& change : evolution.description.changes) {
       const auto& [first, last, from, to, p_value] = change;
       const std::string relative = RelativeChange(from, to);
       statements.emplace_back(
-          std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
+          RelativeSize(from, to),
           fmt::format("{}: {}, {}{}, {}", evolution.quantity->name,
                       change.is_step() ? fmt::format("a step at cycle {}", first)
                                        : fmt::format("cycles {} to {}", first, last),

@@ -174,8 +174,8 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_fric
 
 void AddLawParameters(const OptionGroup& group, LawOptions& law);
 
-/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
-/// slip is only approached, or later: of α > 2/3.
+/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, but at most three elastic
+/// limits, 3Tc/σ, which a law of α > 2/3 passes before it slips.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);

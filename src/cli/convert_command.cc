@@ -119,7 +119,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
     const Json verdict = report::At(fit, "/adequacy/verdict");
     if (verdict.is_string() && verdict != "adequate") {
       Say("convert: note",
-          {fmt::format("the fit is {}: of its intervals only the values are converted",
+          {fmt::format("the fit is {}: its values are converted, its intervals are not",
                        verdict.get<std::string>())},
           console);
     }

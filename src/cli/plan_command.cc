@@ -46,9 +46,14 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   if (options.rig_stiffness) fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
   if (fit.law_choice && fit.law_choice->prefers_alternative()) {
-    plan.notes.emplace_back("Dahl's own law fits better than Masing's: the loops are of that");
-    fit_options.model = fit.law_choice->alternative;
-    fit = identification::Fit({&file.record, 1}, fit_options);
+    identification::FitOptions of_other = fit_options;
+    of_other.model = fit.law_choice->alternative;
+    identification::FitResult other = identification::Fit({&file.record, 1}, of_other);
+    if (other.converged && !(other.law_choice && other.law_choice->prefers_alternative())) {
+      plan.notes.emplace_back("Dahl's own law fits better than Masing's: the plan is by that");
+      fit_options = std::move(of_other);
+      fit = std::move(other);
+    }
   }
   if (fit.converged && !fit.Find("alpha")->is_known()) {
     plan.notes.emplace_back("alpha is not identified: Mindlin's 1/3 is assumed");
@@ -68,12 +73,12 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   }
   plan.expected.law = fit.law;
   plan.expected.model = fit.model;
-  // Errors of n samples that count as m are those of white noise √(n/m) as large.
+  // n samples of which m are effective give the errors of white noise √(n/m) times as large.
   constexpr double kWhite = 1.1;
   const auto samples = static_cast<double>(fit.residuals.samples);
   const double longer = std::sqrt(samples / fit.residuals.effective_samples);
   plan.expected.force_noise = fit.force_noise * std::max(longer, 1.0);
-  if (longer > kWhite) {
+  if (longer > kWhite && !options.force_noise) {
     plan.notes.push_back(
         fmt::format("the noise is autocorrelated: {:.3g} N counts as {:.3g} N of white noise",
                     fit.force_noise, plan.expected.force_noise));

@@ -69,7 +69,8 @@ struct TrackedTest {
     if (cycles_without == 0) return text;
     text += fmt::format("{}{} of {} cycles without a fit or a loop", text.empty() ? "" : "; ",
                         cycles_without, cycles);
-    return last_with == cycles ? text : text + fmt::format(", all from cycle {} on", last_with + 1);
+    const bool ends_without = last_with > 0 && last_with < cycles;
+    return ends_without ? text + fmt::format(", the last with both is {}", last_with) : text;
   }
   /// False where no fit converged.
   [[nodiscard]] bool established() const {
@@ -174,7 +175,7 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
       (is_failed ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
                  : report::VerdictHtml(is_steady ? "good" : "poor",
                                        is_steady         ? "steady"
-                                       : changes.empty() ? "in part"
+                                       : changes.empty() ? "incomplete"
                                                          : "changed",
                                        test.Headline()) +
                        report::ListHtml(changes)) +

@@ -296,8 +296,9 @@ void Observe(std::vector<Column>& columns) {
                         of.greatest < kGreatestCoefficient;
     if (may_be && (of.word == "friction" || of.word == "f")) of.unit = kRatioUnit;
     const bool is_force = of.names(Role::kForce);
-    has_other = has_other || of.unit == kRatioUnit || of.rank == kRatio ||
-                (is_force && of.rank != kLoad && of.least < 0 && of.greatest > 0);
+    has_other =
+        has_other || of.unit == kRatioUnit || of.rank == kRatio ||
+        (is_force && (of.rank != kLoad || of.is_angular) && of.least < 0 && of.greatest > 0);
     has_friction = has_friction || (is_force && of.rank == 0);
   }
   for (Column& of : columns) {

@@ -214,7 +214,7 @@ class RoleAssigner {
     }
     if (has_load) TakeBest(Role::kNormalLoad);
     Quantity& load = Of(Role::kNormalLoad);
-    if (!load.terms.empty() && load.is_plain() && ColumnOf(load.role).greatest < 0) {
+    if (load.is_plain() && ColumnOf(Role::kNormalLoad).greatest < 0) {
       load.terms.front().weight = -1.0;
       Note("normal load {} is negative throughout: its magnitude is taken",
            table_.Label(load.first_column()));

@@ -15,8 +15,8 @@ struct WordRow {
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 
-// The ranks of a machine's load, which is the normal one beside another force, and of what is a
-// force only when it is multiplied by a load.
+// The ranks of a machine's load, which is the normal load if there is another force, and of what is
+// a force only when it is multiplied by a load.
 inline constexpr int kLoad = 2;
 inline constexpr int kRatio = 6;
 

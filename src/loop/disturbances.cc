@@ -29,11 +29,12 @@ std::vector<double> StepsOf(std::span<const double> values) {
   return steps;
 }
 
-/// True if most neighbours differ by whole steps or not at all, and by several numbers of steps, or
-/// with rests between steps that have not always as many samples. An evenly sampled drive of one
-/// speed or a few also gives whole steps, always as many at a speed.
+/// True if nearly all neighbours differ by whole steps, and either by four or more numbers of steps
+/// that keep changing, or after rests of different lengths. A drive of constant speeds, sampled
+/// evenly, also gives whole steps.
 bool IsQuantised(std::span<const double> displacement, double step, bool rests_at_turns) {
   constexpr std::size_t kSpeeds = 4;
+  constexpr std::size_t kHeld = 10;  // samples, on average, for which a drive holds its speeds
   constexpr double kWhole = 1e-6;
   constexpr double kMostBroken = 0.01;  // of the pairs
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
@@ -45,6 +46,7 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
   double last = 0.0;  // steps of the last motion
   std::set<std::size_t> rests;
   std::set<double> speeds;
+  std::size_t changes = 0;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = (displacement[i] - displacement[i - 1]) / step;
     const double nearest = std::round(steps);
@@ -55,10 +57,11 @@ bool IsQuantised(std::span<const double> displacement, double step, bool rests_a
     }
     if (last != 0 && (rests_at_turns || last * nearest > 0)) rests.insert(rest);
     if (speeds.size() < kSpeeds) speeds.insert(std::abs(nearest));
+    if (std::abs(nearest) != std::abs(last)) ++changes;
     last = nearest;
     rest = 1;
   }
-  return rests.size() > 1 || speeds.size() == kSpeeds;
+  return rests.size() > 1 || (speeds.size() == kSpeeds && kHeld * changes > displacement.size());
 }
 
 /// Windows that are tried, each about √2 times the last.

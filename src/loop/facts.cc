@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/bivariate_statistics.hpp>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -396,13 +397,7 @@ int ForceSense(const RecordView& record, const LoopFacts& facts) {
       std::abs(energies) > kSureDeviations * NoiseOfEnergies(record)) {
     return sign_of(energies);
   }
-  const double mean_displacement = Mean(record.displacement);
-  const double mean_force = Mean(record.force);
-  double covariance = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    covariance += (record.displacement[i] - mean_displacement) * (record.force[i] - mean_force);
-  }
-  return sign_of(covariance);
+  return sign_of(boost::math::statistics::covariance(record.displacement, record.force));
 }
 
 }  // namespace mindahl::loop

@@ -122,13 +122,15 @@ bool PrefersOther(const FitResult& fit) {
 }
 
 /// Takes back a preference for the law that the program did not choose.
-void WithdrawPreference(FitResult& fit) {
-  if (!PrefersOther(fit)) return;
+/// @returns true if there was one
+bool WithdrawPreference(FitResult& fit) {
+  if (!PrefersOther(fit)) return false;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
   fit.law_choice->delta_aicc.reset();
   std::erase_if(fit.findings,
                 [](const identification::Finding& finding) { return finding.code == "other_law"; });
+  return true;
 }
 
 /// Fits by the model of the options or, where that is to be chosen, by Masing's law or, where the
@@ -155,8 +157,8 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
   return asked;
 }
 
-/// Makes the requested fit. With `--model auto` the law is chosen without terms that are chosen,
-/// and without an asymmetry, beside which laws are not compared.
+/// Makes the requested fit. With `--model auto` the law is chosen without an asymmetry, beside
+/// which laws are not compared, and again with terms that are chosen.
 TermSelection FitAsked(const FitRequest& request, FitOptions options,
                        std::span<const Record> records) {
   const bool chooses_law = request.fit.model == nullptr;
@@ -180,7 +182,10 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
     return of.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   };
   const auto* const dahl = models::FindFrictionModel("dahl");
-  if (chooses_law && asked.options.model != dahl &&
+  const bool is_comparable = of_asymmetry == 0 && !asked.fit.WidestRecord().load_varies &&
+                             !options.fixed.contains("sigma") &&
+                             !options.fixed.contains("slip_force");
+  if (chooses_law && is_comparable && asked.options.model != dahl &&
       (!is_adequate(asked) || PrefersOther(asked.fit) || asked.added.size() > 1)) {
     options.model = dahl;
     TermSelection of_dahl = identification::SelectTerms(
@@ -189,7 +194,8 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
         !is_adequate(asked) || PrefersOther(asked.fit) || of_dahl.added.size() < asked.added.size();
     if (is_adequate(of_dahl) && is_better) asked = std::move(of_dahl);
   }
-  if (chooses_law) WithdrawPreference(asked.fit);
+  // Of a law that is not fitted with terms of its own nothing is said.
+  if (chooses_law && WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
 }
 

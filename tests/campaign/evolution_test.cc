@@ -524,6 +524,19 @@ TEST(Describe, WeighsValuesByTheirStandardErrors) {
   EXPECT_LE(found, kCourses / 20);
 }
 
+TEST(Describe, WeighsValuesWithoutAnErrorAsTheUsualOnes) {
+  Generator generator(1);
+  Course values;  // of an exponent that is at its bound, 0, in some cycles
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
+    const bool is_at_bound = cycle % 9 == 0;
+    values.Add(cycle, is_at_bound ? 0.0 : 0.02 + 0.004 * Normal(generator), 1,
+               is_at_bound ? 0.0 : 0.01);
+  }
+  const CourseDescription description = Describe(values);
+  EXPECT_THAT(description.changes, IsEmpty());
+  EXPECT_NEAR(description.from, 0.02, 0.004);
+}
+
 TEST(Describe, SettlesAtTheCycleAndNotAtTheBinOfAStep) {
   for (const std::size_t place : {3201, 3204, 3334}) {
     const CourseDescription description = Describe(CourseOf(

@@ -62,7 +62,7 @@ TEST_F(Convert, SaysWhereTheFitIsNotAdequate) {
   const auto notes = [&] { return Done("convert --to dahl " + Write("fit.json", fit.dump())).err; };
   EXPECT_THAT(notes(), Not(HasSubstr("the fit is")));
   fit["adequacy"]["verdict"] = "doubtful";
-  EXPECT_THAT(notes(), HasSubstr("the fit is doubtful: of its intervals only the values"));
+  EXPECT_THAT(notes(), HasSubstr("the fit is doubtful: its values are converted"));
 }
 
 TEST_F(Convert, FitsARecordWithTheColumnsThatAreChosen) {

@@ -69,6 +69,12 @@ TEST(EncoderStep, IsZeroForADriveThatRunsEvenlyOrFromRestToRest) {
   EXPECT_EQ(EncoderStep(between), 0.0);
   EXPECT_EQ(EncoderStep(Repeated(between, 3)), 0.0);
   EXPECT_EQ(EncoderStep(Sine(3, 200)), 0.0);
+  History growing;  // triangles of four amplitudes, of as many samples a stroke
+  for (std::size_t i = 0; i < 800; ++i) {
+    const auto stage = static_cast<double>(1 + i / 200);
+    growing.push_back(stage * between[i % 600]);
+  }
+  EXPECT_EQ(EncoderStep(growing), 0.0);
   // A trapezoid whose ramps end with half a step, and whose dwells differ by a sample.
   History dwells;
   for (std::size_t i = 0; i < 600; ++i) {

@@ -74,22 +74,22 @@ struct CourseDescription {
   /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
   std::vector<Change> changes = {};  ///< in their order
-  /// True if neighbours go together where segments miss the values, as of a periodic time history.
+  /// True if the residuals about the segments are large, and alike in neighbouring bins, as of a
+  /// periodic time history.
   bool varies = false;
 
   [[nodiscard]] bool changed() const { return !changes.empty(); }
 };
 
-/// Divides a time history into straight segments: those that miss the least squares, up to eight,
-/// and as many as F tests of one more against one less call for with a chance below 1 %, corrected
-/// for the number of places. The bin between two is in neither line: it may hold the values of
-/// both. Bins weigh by their standard errors, the scatter beyond these, and that of their
-/// neighbours. The noise that this is judged by is that of neighbouring values, whatever the lines
-/// miss, but no less than 0.1 % of the values. Steps are between segments, trends along one by
-/// Student's test of its slope. No value is stated that no cycle had. Where the segments leave more
-/// than a quarter of all squares, and ten times what neighbours differ by, it varies, without
-/// changes.
-/// Cost: with the square of the number of bins.
+/// Divides a time history into at most eight straight segments with the least sum of squares; F
+/// tests, with a chance below 1 %, corrected for the number of places, choose how many. The bin
+/// between two is in neither line: it may hold the values of both. Bins weigh by their standard
+/// errors, the scatter beyond these, and that of their neighbours. The noise that this is judged by
+/// is that of neighbouring values, whatever the lines miss, but no less than 0.1 % of the values.
+/// Steps are between segments, trends along one by Student's test of its slope. No value is stated
+/// that no cycle had. Where the residuals have more than a quarter of the variance, and ten times
+/// what neighbours differ by, it varies, without changes.
+/// Cost: with the square of the number of bins, and with the number of cycles.
 CourseDescription Describe(const Course& course);
 
 /// Describes a quantity whose time history is reported.

@@ -37,8 +37,9 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   const Solution& best = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
   const ParameterEstimate& shape = parameters[kShape];
-  // By chance 1/3 lies outside the interval of one in forty contacts of Mindlin's on this side, and
-  // as far outside of one in six hundred. Intervals that include a rig for all cover too often.
+  // Of Mindlin's contacts in a rigid rig 1/3 lies above the interval with a probability of 1/40,
+  // and half of its upper half further with 1/600. Intervals of the former that all included a rig
+  // would cover too often.
   constexpr double kFurther = 0.5;  // of the distance from the value to the end
   // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
   // is.

@@ -34,8 +34,8 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
 
 /// Includes what steps of the readings may hide. Of the force: half of one, where no noise makes it
 /// dither; branches whose α differ by 0.05 are no more than 1 % of Tc apart. Of the displacement: a
-/// step at either end of a stroke, in σ and by as much in α, since errors of the encoder are the
-/// same in cycles that the samples are in step with.
+/// step over the amplitude, in σ and by as much in α: where each cycle is sampled at the same
+/// places, the errors of the encoder repeat and do not average out.
 void CoverSteps(const loop::PreparedRecords& records, FitResult& result);
 
 /// Extends intervals to what they are with γ integrated out. The error counts twice: a step
