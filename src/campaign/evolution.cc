@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "core/probability.h"
+#include "loop/statistics.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
@@ -83,12 +83,10 @@ std::vector<double> SquaredBends(Bins bins) {
   return squares;
 }
 
-double MedianOf(std::vector<double> values) { return boost::math::statistics::median(values); }
-
 /// Returns the variance of a value that squared bends show.
 double VarianceOf(std::vector<double> squares) {
   constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
-  return MedianOf(std::move(squares)) / kMedianOfChiSquared;
+  return loop::Median(squares) / kMedianOfChiSquared;
 }
 
 /// Returns the least variance of a value, in as many as a bin counts.
@@ -101,7 +99,7 @@ std::vector<Course::Bin> Weighted(Bins bins) {
   std::vector<Course::Bin> weighted(bins.begin(), bins.end());
   std::vector<double> errors;
   for (const Course::Bin& bin : bins) errors.push_back(bin.squared_error);
-  const double error = MedianOf(errors);
+  const double error = loop::Median(errors);
   const double usual = std::max(error, VarianceOf(SquaredBends(bins)));
   const double least = kExact * kExact * usual;
   if (!(usual > 0)) return weighted;
@@ -235,7 +233,7 @@ class Divisions {
     std::size_t begin = 0;  // of the last segment
   };
   Bins bins_;
-  // Of one segment more than the first index, of as many first bins as the second.
+  // best_[k][n] divides the first n bins into k + 1 segments.
   std::array<std::vector<Best>, kMostSegments> best_;
 };
 

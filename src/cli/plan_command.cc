@@ -45,11 +45,11 @@ void TakeRecord(const PlanOptions& options, Plan& plan) {
   identification::FitOptions fit_options;
   if (options.rig_stiffness) fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
-  if (fit.law_choice && fit.law_choice->prefers_alternative()) {
+  if (fit.prefers_other_law()) {
     identification::FitOptions of_other = fit_options;
     of_other.model = fit.law_choice->alternative;
     identification::FitResult other = identification::Fit({&file.record, 1}, of_other);
-    if (other.converged && !(other.law_choice && other.law_choice->prefers_alternative())) {
+    if (other.converged && !other.prefers_other_law()) {
       plan.notes.emplace_back("Dahl's own law fits better than Masing's: the plan is by that");
       fit_options = std::move(of_other);
       fit = std::move(other);

@@ -116,15 +116,10 @@ void NoteOtherLoads(const FitOptions& options, report::ReportInput& input) {
   }
 }
 
-/// True if the other law was fitted too, and is preferred.
-bool PrefersOther(const FitResult& fit) {
-  return fit.law_choice && fit.law_choice->prefers_alternative();
-}
-
 /// Takes back a preference for the law that the program did not choose.
 /// @returns true if there was one
 bool WithdrawPreference(FitResult& fit) {
-  if (!PrefersOther(fit)) return false;
+  if (!fit.prefers_other_law()) return false;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
   fit.law_choice->delta_aicc.reset();
@@ -140,7 +135,7 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
   TermSelection asked;
   asked.options = options;
   asked.fit = identification::Fit(records, options);
-  if (chooses_law && PrefersOther(asked.fit)) {
+  if (chooses_law && asked.fit.prefers_other_law()) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     FitResult other = identification::Fit(records, of_other);
@@ -186,15 +181,15 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
                              !options.fixed.contains("sigma") &&
                              !options.fixed.contains("slip_force");
   if (chooses_law && is_comparable && asked.options.model != dahl &&
-      (!is_adequate(asked) || PrefersOther(asked.fit) || asked.added.size() > 1)) {
+      (!is_adequate(asked) || asked.fit.prefers_other_law() || asked.added.size() > 1)) {
     options.model = dahl;
     TermSelection of_dahl = identification::SelectTerms(
         views, options, identification::Fit(records, options), identification::MostTerms::kTwo);
-    const bool is_better =
-        !is_adequate(asked) || PrefersOther(asked.fit) || of_dahl.added.size() < asked.added.size();
+    const bool is_better = !is_adequate(asked) || asked.fit.prefers_other_law() ||
+                           of_dahl.added.size() < asked.added.size();
     if (is_adequate(of_dahl) && is_better) asked = std::move(of_dahl);
   }
-  // Of a law that is not fitted with terms of its own nothing is said.
+  // The answer does not mention the other law: it was not fitted with terms that it requires.
   if (chooses_law && WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
 }
@@ -311,7 +306,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
-  if (!fit.converged || !(before > kLeastMisfit) || PrefersOther(fit) ||
+  if (!fit.converged || !(before > kLeastMisfit) || fit.prefers_other_law() ||
       fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       fit.FindFinding("force_at_limit") != nullptr || fit.FindFinding("rows_missing") != nullptr ||
       fit.FindFinding("prior_contradicted") != nullptr ||

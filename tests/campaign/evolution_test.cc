@@ -501,7 +501,8 @@ TEST(Describe, HardlyEverFindsAChangeWhereTheScatterChanges) {
   }
 }
 
-// As where the amplitude grows from where a cycle hardly determines the slip force.
+// In a test of growing amplitude the first cycles hardly determine the slip force: their standard
+// errors are large.
 TEST(Describe, WeighsValuesByTheirStandardErrors) {
   int found = 0;
   constexpr int kCourses = 50;

@@ -66,8 +66,9 @@ struct Change {
 };
 
 struct CourseDescription {
-  /// First and last value, or of their segments' lines where the values lie about these by their
-  /// scatter; without a change the mean of all; the least and the greatest where it varies.
+  /// The first and the last value; the value of the segment's line in its place if it lies within
+  /// the scatter. Without a change both are the weighted mean, if it varies the least and the
+  /// greatest value.
   double from = 0.0;
   double to = 0.0;
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it

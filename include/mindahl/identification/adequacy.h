@@ -28,8 +28,8 @@ struct ResidualStructure {
   /// Variance within these strokes that does not repeat from one to the next, over the variance of
   /// all residuals: above 1 − `repeatable_share` where these strokes fit worse than the rest.
   double noise_share = 1.0;
-  /// Correlation of the residuals from one stroke to the next of its direction: 1 for what changes
-  /// slowly. 0 where a direction has fewer than three strokes.
+  /// Correlation of the residuals from one stroke to the next of the same direction: near 1 if they
+  /// repeat or change slowly. 0 if a direction has fewer than three strokes.
   double carried_over = 0.0;
   /// Number of strokes of growing and of falling displacement that are long enough.
   std::array<std::size_t, 2> strokes{};

@@ -31,7 +31,8 @@ struct LawChoice {
   models::BranchLaw law;  ///< its σ, α, Tc
   /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
   /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
-  /// Of laws that are not distinguished, large where the first stroke alone would tell them.
+  /// It may exceed the limit of decision without a decision: the laws then differ in the first
+  /// stroke alone, whose earlier loading is not recorded.
   std::optional<double> delta_aicc;
 
   [[nodiscard]] bool prefers_alternative() const { return decided && preferred == alternative; }
@@ -195,6 +196,10 @@ struct FitResult {
   /// 95 % interval if and only if it lies farther away than Student's quantile of this error.
   [[nodiscard]] double ErrorTowards(const ParameterEstimate& estimate, double value) const;
 
+  /// True if the other law was compared with the fitted one, and is preferred.
+  [[nodiscard]] bool prefers_other_law() const {
+    return law_choice && law_choice->prefers_alternative();
+  }
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }
 };
 

@@ -60,7 +60,7 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   if (result.depth < Depth::kIntervals) return std::nullopt;
   const Thresholds& thresholds = options.thresholds;
   // The other law may carry it.
-  if (result.law_choice && result.law_choice->prefers_alternative()) return std::nullopt;
+  if (result.prefers_other_law()) return std::nullopt;
   const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
                            result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
   if (is_followed || result.parameters.empty() || result.response == loop::Channel::kDisplacement ||

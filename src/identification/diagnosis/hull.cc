@@ -37,9 +37,9 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   const Solution& best = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
   const ParameterEstimate& shape = parameters[kShape];
-  // Of Mindlin's contacts in a rigid rig 1/3 lies above the interval with a probability of 1/40,
-  // and half of its upper half further with 1/600. Intervals of the former that all included a rig
-  // would cover too often.
+  // If the contact is Mindlin's and the rig is rigid, 1/3 exceeds the upper end of the interval
+  // with a probability of 1/40, and exceeds it by this margin with one of 1/600. Without the
+  // margin, the intervals would cover the truth in more than 97 % of such loops.
   constexpr double kFurther = 0.5;  // of the distance from the value to the end
   // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
   // is.
