@@ -11,11 +11,6 @@
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
-namespace {
-
-constexpr double kOpen = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& parameters,
                                       std::string_view name) {
@@ -41,14 +36,8 @@ const RecordFit& FitResult::WidestRecord() const {
   });
 }
 
-models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
-  return models::AtLoad(law, record.load_ratio, load_exponent);
-}
-
 double FitResult::EncoderStep() const {
-  double step = 0.0;
-  for (const RecordFit& record : records) step = std::max(step, record.encoder_step);
-  return step;
+  return std::ranges::max_element(records, {}, &RecordFit::encoder_step)->encoder_step;
 }
 
 double FitResult::PeakForce() const {
@@ -65,7 +54,7 @@ bool FitResult::is_scaled_by_load() const {
 std::optional<double> FitResult::MeasuredHalfGap() const {
   if (is_scaled_by_load() || response != loop::Channel::kForce) return std::nullopt;
   const RecordFit& widest = WidestRecord();
-  if (!widest.facts.half_gap || !(*widest.facts.half_gap > 0)) return std::nullopt;
+  if (!(widest.facts.half_gap > 0.0)) return std::nullopt;
   return *widest.facts.half_gap / widest.load_ratio;
 }
 
@@ -77,10 +66,9 @@ double FitResult::MisfitScale() const {
 }
 
 std::size_t FitResult::CountFreeParameters() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(parameters, [](const ParameterEstimate& parameter) {
-        return parameter.status != ParameterStatus::kFixed;
-      }));
+  const auto held =
+      std::ranges::count(parameters, ParameterStatus::kFixed, &ParameterEstimate::status);
+  return parameters.size() - static_cast<std::size_t>(held);
 }
 
 double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude) {
@@ -90,7 +78,8 @@ double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, doub
 }
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
-  return std::max(ErrorTowards(estimate, -kOpen), ErrorTowards(estimate, kOpen));
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  return std::max(ErrorTowards(estimate, -kFar), ErrorTowards(estimate, kFar));
 }
 
 double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
@@ -99,7 +88,9 @@ double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) 
   const Term* term = FindTerm(TermNameOf(estimate.name));
   const bool is_positive = term != nullptr && term->positive;
   const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
-  if (!has_error || !end || (is_positive && !(*end > 0))) return kOpen;
+  if (!has_error || !end || (is_positive && !(*end > 0))) {
+    return std::numeric_limits<double>::infinity();
+  }
   const double way = is_positive ? estimate.value * std::abs(std::log(*end / estimate.value))
                                  : std::abs(*end - estimate.value);
   const double error = way / StudentQuantile(degrees_of_freedom, confidence);

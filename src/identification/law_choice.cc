@@ -6,7 +6,6 @@
 
 #include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
-#include "identification/inference/noise.h"
 #include "identification/solved_fit.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -30,23 +29,12 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   });
 }
 
-/// True if a record begins where a fit has the contact unloaded, whatever forces are added to its
-/// own.
-bool BeginsUnloaded(const FitResult& fit, std::size_t record, double displacement) {
-  constexpr double kUnloaded = 0.05;  // of Tc
-  const ParameterEstimate* const origin = fit.FindOf(fit.records[record], "displacement_offset");
-  return fit.initial_state == InitialState::kVirgin && origin != nullptr &&
-         std::abs(displacement - origin->value) * fit.law.tangential_stiffness <=
-             kUnloaded * fit.law.slip_force;
-}
-
-/// Returns what lies before the first turns of records that begin under a force, with a past that
-/// they do not show.
+/// Returns what lies before the first turns of records that begin under a force of unknown past.
 /// @param dahl  fit of Dahl's own law
 std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
                                      const ScaledRecords& data, const FitResult& fit,
                                      const FitResult& dahl) {
-  constexpr double kUnloaded = 0.05;   // of the half range
+  constexpr double kUnloaded = 0.05;   // of the half range, or of Tc
   constexpr double kDeviations = 4.0;  // of the noise
   const double noise = std::sqrt(WhiteVariance(fit)) / data.response_unit();
   std::vector<SampleRange> past;
@@ -56,14 +44,18 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
     const auto [low, high] = std::ranges::minmax(force);
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
     if (reversals.empty() || !(std::abs(force.front() - (low + high) / 2) > unloaded)) continue;
-    if (BeginsUnloaded(dahl, r, records[r].displacement.front())) continue;
-    past.push_back({r, 0, reversals.front()});
+    // Whatever forces are added to its own, a virgin contact may be unloaded at the first sample.
+    const ParameterEstimate* const origin = dahl.FindOf(dahl.records[r], "displacement_offset");
+    const bool begins_unloaded =
+        dahl.initial_state == InitialState::kVirgin && origin != nullptr &&
+        std::abs(records[r].displacement.front() - origin->value) * dahl.law.tangential_stiffness <=
+            kUnloaded * dahl.law.slip_force;
+    if (!begins_unloaded) past.push_back({r, 0, reversals.front()});
   }
   return past;
 }
 
-/// Returns the options of a fit of the other law, from that of the same steady loop. α stays as it
-/// is held.
+/// Returns the options of a fit of the other law, from the same steady loop. A held α stays.
 FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
                           const models::FrictionModel& other, const models::BranchLaw& law) {
   FitOptions others = options;
@@ -126,11 +118,10 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                          : models::MasingEquivalent(fit.law, amplitude);
   FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
-  const bool is_steady = fit.initial_state == InitialState::kSteady;
   const bool is_open = !options.initial_state;
   const double step = data.is_forced() ? 0.0 : fit.EncoderStep() / data.length;
   const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
-  const bool is_one_curve = is_steady && is_one_amplitude;
+  const bool is_one_curve = fit.initial_state == InitialState::kSteady && is_one_amplitude;
   const auto starts_inside = [&](const ScaledRecord& record) {  // the range of its strokes
     const auto [low, high] = std::ranges::minmax(record.excitation());
     const double start = record.excitation().front();
@@ -143,13 +134,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (step > options.thresholds.coarse_step) return choice;
   const std::optional<FitResult> other = FitWithout({}, records, others);
   // At a bound of α, σ or Tc the law turns into another one.
-  const bool is_at_bound = other && std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"},
-                                                        [&](const char* name) {
-                                                          return other->Find(name)->is_at_bound();
-                                                        });
-  if (!other || is_at_bound) {
-    choice.decided = !is_one_curve;
-    if (choice.decided) choice.preferred = fit.model;
+  const auto is_at_bound = [&](const char* name) { return other->Find(name)->is_at_bound(); };
+  if (!other || std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, is_at_bound)) {
+    if (!is_one_curve) choice.preferred = fit.model;
     return choice;
   }
   const FitResult& better = other->likelihood_rms < fit.likelihood_rms ? *other : fit;
@@ -165,54 +152,56 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   };
   if (is_one_curve && (delta > 0 || is_undecided(delta))) return choice;
   choice.law = other->law;
-  // Under cycles of one amplitude, the two laws differ only in a transient. A drift of the force or
-  // of the slip force resembles it: if the residuals show one, the other law must also fit better
-  // with that term in both fits.
+  // Returns the difference of both laws fitted again, without some samples or with one more term.
+  const auto refitted = [&](std::span<const SampleRange> held_out,
+                            std::string_view term) -> std::optional<double> {
+    FitOptions same = options;
+    StartFrom(fit, same);
+    FitOptions other_same = others;
+    if (!term.empty()) {
+      same.terms.emplace_back(term);
+      other_same.terms.emplace_back(term);
+    }
+    const auto own = FitWithout(held_out, records, std::move(same));
+    const auto of_other = FitWithout(held_out, records, std::move(other_same));
+    if (!own || !of_other) return std::nullopt;
+    return criterion(*of_other) - criterion(*own);
+  };
+  // Under cycles of one amplitude the laws differ only in a transient, which a drift resembles: if
+  // the residuals show one, the other law must also fit better with that term in both fits.
   const auto drift = std::ranges::find_if(fit.adequacy.causes, [](const Cause& cause) {
     return cause.term == "force_drift" || cause.term == "slip_trend";
   });
   if (drift != fit.adequacy.causes.end() && !is_undecided(delta) && delta < 0) {
-    FitOptions with = options;
-    FitOptions other_with = others;
-    StartFrom(fit, with);
-    with.terms.emplace_back(drift->term);
-    other_with.terms.emplace_back(drift->term);
-    const auto fit_with = FitWithout({}, records, std::move(with));
-    const auto other_fit_with = FitWithout({}, records, std::move(other_with));
-    if (fit_with && other_fit_with) {
-      delta = std::max(delta, criterion(*other_fit_with) - criterion(*fit_with));
-    }
+    delta = std::max(delta, refitted({}, drift->term).value_or(delta));
   }
   // Dahl's own law can start from any force, Masing's only from reversals that may not be recorded:
   // the first branch of an excerpt is no evidence for Dahl's, unless a whole stroke follows it and
   // the loop is short of slip, where no such reversals give Masing's contact the loop of Dahl's,
   // and Dahl's leaves but noise.
   const bool is_for_dahl = !is_undecided(delta) && (delta > 0) != is_masing;
-  const std::vector<SampleRange> past =
-      is_open && is_for_dahl ? UnknownPast(records, data, fit, is_masing ? *other : fit)
-                             : std::vector<SampleRange>{};
+  const FitResult& masing = is_masing ? fit : *other;
+  const FitResult& dahl = is_masing ? *other : fit;
+  std::vector<SampleRange> past;
+  if (is_open && is_for_dahl) past = UnknownPast(records, data, fit, dahl);
   if (!past.empty() && is_one_amplitude) {
     const auto leaves_more = [&](const FitResult& of) {
       return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
     };
-    const bool is_told =
-        fit.WidestRecord().reversals.size() > 1 && !loop::HasSlipped(fit.WidestRecord().facts) &&
-        leaves_more(is_masing ? fit : *other) && !leaves_more(is_masing ? *other : fit);
+    const bool is_told = fit.WidestRecord().reversals.size() > 1 &&
+                         !loop::HasSlipped(fit.WidestRecord().facts) && leaves_more(masing) &&
+                         !leaves_more(dahl);
     if (!is_told) {
       choice.delta_aicc = delta;
       return choice;
     }
   } else if (!past.empty()) {
-    FitOptions same = options;
-    StartFrom(fit, same);
-    const auto without = FitWithout(past, records, std::move(same));
-    const auto other_without = FitWithout(past, records, std::move(others));
-    if (!without || !other_without) return choice;
-    delta = criterion(*other_without) - criterion(*without);
+    const std::optional<double> without = refitted(past, "");
+    if (!without) return choice;
+    delta = *without;
   }
   choice.delta_aicc = delta;
-  choice.decided = !is_undecided(delta);
-  if (choice.decided) choice.preferred = delta > 0 ? fit.model : choice.alternative;
+  if (!is_undecided(delta)) choice.preferred = delta > 0 ? fit.model : choice.alternative;
   return choice;
 }
 

@@ -235,7 +235,7 @@ class Writer {
     add("σ", "sigma", choice->law.tangential_stiffness);
     add("Tc", "slip_force", choice->law.slip_force);
     if (!values.empty()) values += ')';
-    if (!choice->decided) {
+    if (!choice->decided()) {
       const double delta = choice->delta_aicc.value_or(0.0);
       std::string condition;
       if (std::abs(delta) >= report_.options.thresholds.undecided) {

@@ -124,7 +124,7 @@ Json LawChoiceJson(const std::optional<identification::LawChoice>& choice) {
     alternatives.back().update(LawJson(choice->law));
   }
   const bool prefers = choice && choice->preferred != nullptr;
-  return {{"decided", choice && choice->decided},
+  return {{"decided", choice && choice->decided()},
           {"preferred", prefers ? Json(choice->preferred->name) : Json()},
           {"alternatives", std::move(alternatives)},
           {"delta_aicc", choice ? NumberOrNull(choice->delta_aicc) : Json()}};

@@ -120,7 +120,6 @@ void NoteOtherLoads(const FitOptions& options, report::ReportInput& input) {
 /// @returns true if there was one
 bool WithdrawPreference(FitResult& fit) {
   if (!fit.prefers_other_law()) return false;
-  fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
   fit.law_choice->delta_aicc.reset();
   std::erase_if(fit.findings,
@@ -141,7 +140,7 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
     FitResult other = identification::Fit(records, of_other);
     const auto& confirmed = other.law_choice;
     const bool is_preferred =
-        !confirmed || (confirmed->decided && !confirmed->prefers_alternative());
+        !confirmed || (confirmed->decided() && !confirmed->prefers_alternative());
     if (other.converged && is_preferred) {
       asked.options = std::move(of_other);
       asked.fit = std::move(other);

@@ -151,7 +151,7 @@ TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3)), 0.003, generator);
   const FitResult fit = FitOne(loop, OfDisplacement());
   ASSERT_TRUE(fit.law_choice.has_value());
-  EXPECT_TRUE(fit.law_choice->decided);
+  EXPECT_TRUE(fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->preferred, fit.model);
 }
 

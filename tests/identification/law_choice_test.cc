@@ -43,7 +43,7 @@ TEST(LawChoice, OfASteadyLoopOfOneAmplitudeIsUndecidedWithBothSetsOfNumbers) {
   for (const double amplitude : {0.8 * kGrossSlip, 2 * kGrossSlip}) {
     const FitResult fit = FitOne(Noisy(Steady(amplitude)));
     ASSERT_TRUE(fit.law_choice);
-    EXPECT_FALSE(fit.law_choice->decided);
+    EXPECT_FALSE(fit.law_choice->decided());
     EXPECT_EQ(fit.law_choice->preferred, nullptr);
     EXPECT_FALSE(fit.law_choice->delta_aicc) << "there is nothing to compare";
     EXPECT_EQ(fit.law_choice->alternative->name, "dahl");
@@ -59,7 +59,7 @@ TEST(LawChoice, OfASteadyLoopOfOneAmplitudeIsUndecidedWithBothSetsOfNumbers) {
 TEST(LawChoice, OfASteadyLoopFittedByDahlsLawGivesTheContactByMasings) {
   const FitResult fit = FitOne(Steady(), OfModel("dahl"));
   ASSERT_TRUE(fit.law_choice);
-  EXPECT_FALSE(fit.law_choice->decided);
+  EXPECT_FALSE(fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->alternative->name, "mindlin-dahl");
   EXPECT_LE(WorstError(fit.law, DahlEquivalent(kMindlin, 0.8 * kGrossSlip)), kNoiseFree);
   EXPECT_LE(WorstError(fit.law_choice->law, kMindlin), kNoiseFree);
@@ -72,7 +72,7 @@ TEST(LawChoice, IsMadeBeforeTheSlipForceIsHeldAtTheLargestForce) {
   const History displacement = Cycling(Wave::kSine, 1.16 * kGrossSlip, 4.0, 2 * kPerCycle);
   const Record record = MakeRecord(displacement, Respond(Model("dahl"), law, displacement));
   const FitResult fit = FitOne(Noisy(record));
-  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided);
+  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->preferred->name, "dahl");
   EXPECT_LE(fit.WidestRecord().facts.peak_force, 0.8 * law.slip_force);
 }
@@ -80,7 +80,7 @@ TEST(LawChoice, IsMadeBeforeTheSlipForceIsHeldAtTheLargestForce) {
 TEST(LawChoice, IsMadeByAVirginBranch) {
   const FitResult fit = FitOne(Noisy(Virgin("mindlin-dahl")));
   ASSERT_TRUE(fit.law_choice);
-  EXPECT_TRUE(fit.law_choice->decided);
+  EXPECT_TRUE(fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->preferred->name, "mindlin-dahl");
   EXPECT_GT(*fit.law_choice->delta_aicc, 100.0);
   EXPECT_EQ(fit.FindFinding("other_law", "undecided"), nullptr);
@@ -91,7 +91,7 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   const Record record = Noisy(Virgin("dahl"));
   const FitResult masing = FitOne(record);
   ASSERT_TRUE(masing.law_choice);
-  EXPECT_TRUE(masing.law_choice->decided);
+  EXPECT_TRUE(masing.law_choice->decided());
   EXPECT_EQ(masing.law_choice->preferred, masing.law_choice->alternative);
   EXPECT_LT(*masing.law_choice->delta_aicc, -100.0);
   const Finding* finding = masing.FindFinding("other_law", "better");
@@ -136,7 +136,7 @@ TEST(LawChoice, IsNotMadeByReadingsOfFewSteps) {
       record.displacement = testing::Quantised(record.displacement, kAmplitude / steps);
       const FitResult fit = FitOne(record);
       ASSERT_TRUE(fit.law_choice) << model << steps;
-      EXPECT_EQ(fit.law_choice->decided, steps > 20) << model << steps;
+      EXPECT_EQ(fit.law_choice->decided(), steps > 20) << model << steps;
     }
   }
 }
@@ -170,7 +170,7 @@ TEST(LawChoice, IsNotMadeByAFirstStrokeOfUnknownPast) {
         std::pair(From(Noisy(with_past), 2 * kPerCycle), "a past")}) {
     const FitResult fit = FitOne(record);
     ASSERT_TRUE(fit.law_choice) << state;
-    EXPECT_FALSE(fit.law_choice->decided) << state;
+    EXPECT_FALSE(fit.law_choice->decided()) << state;
     EXPECT_LT(*fit.law_choice->delta_aicc, -10.0) << state;
     EXPECT_EQ(fit.model->name, "mindlin-dahl") << state;
     EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << state;
@@ -185,7 +185,7 @@ TEST(LawChoice, IsNotMadeByTheRestOfOneBranchAndHalfTheNext) {
   const Record cycled = Virgin("mindlin-dahl", 0.6 * kGrossSlip, 2.7);
   const Record record = WithForceNoise(From(cycled, 2 * kPerCycle), 0.04, generator);
   const FitResult fit = FitOne(record);
-  EXPECT_FALSE(fit.law_choice && fit.law_choice->decided);
+  EXPECT_FALSE(fit.law_choice && fit.law_choice->decided());
   const ParameterEstimate& sigma = *fit.Find("sigma");
   EXPECT_LT(*sigma.lower95, kMindlin.tangential_stiffness);
   EXPECT_GT(*sigma.upper95, kMindlin.tangential_stiffness);
@@ -197,7 +197,7 @@ TEST(LawChoice, IsMadeByASecondAmplitude) {
     for (const char* fitted : {"mindlin-dahl", "dahl"}) {
       const FitResult fit = FitOne(record, OfModel(fitted));
       ASSERT_TRUE(fit.law_choice) << model << ' ' << fitted;
-      EXPECT_TRUE(fit.law_choice->decided) << model << ' ' << fitted;
+      EXPECT_TRUE(fit.law_choice->decided()) << model << ' ' << fitted;
       EXPECT_EQ(fit.law_choice->preferred->name, model) << fitted;
     }
   }
@@ -207,7 +207,7 @@ TEST(LawChoice, IsNotMadeWhereNoiseHidesTheDifference) {
   Generator generator(11);
   const FitResult fit = FitOne(WithForceNoise(Virgin("mindlin-dahl"), 200 * kNoise, generator));
   ASSERT_TRUE(fit.law_choice);
-  EXPECT_FALSE(fit.law_choice->decided);
+  EXPECT_FALSE(fit.law_choice->decided());
 }
 
 TEST(LawChoice, KeepsAlphaWhereItIsHeld) {
@@ -232,7 +232,7 @@ TEST(LawChoice, IsNoneWhereTheLawsAreOneOrAParameterIsHeld) {
 
 TEST(LawChoice, IsMadeWithinABoundThatExcludesNothing) {
   const FitResult fit = FitOne(Noisy(Virgin("dahl")), {.bounds = {{"sigma", {1e5, 1e10}}}});
-  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided);
+  ASSERT_TRUE(fit.law_choice && fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->preferred->name, "dahl");
 }
 

@@ -216,7 +216,6 @@ TEST(Answer, SaysOneThingOfTheLaw) {
   EXPECT_EQ(LineOf(input, "law"),
             "Masing's; Dahl's own fits better (σ 60 N/µm, Tc 41 N), unless the first stroke began "
             "at a turn that is not recorded");
-  input.fit.law_choice->decided = true;
   input.fit.law_choice->preferred = input.fit.model;
   EXPECT_EQ(LineOf(input, "law"), "Masing's, not Dahl's own");
 }

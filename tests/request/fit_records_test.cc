@@ -220,7 +220,7 @@ TEST(Law, IsMasingsAndNotPreferredWhereEachFitsBetterThanTheSolutionOfTheOther) 
   const identification::FitResult fit = FitRecords({}, {file}).fit;
   EXPECT_EQ(fit.model->name, "mindlin-dahl");
   ASSERT_TRUE(fit.law_choice);
-  EXPECT_FALSE(fit.law_choice->decided);
+  EXPECT_FALSE(fit.law_choice->decided());
   EXPECT_EQ(fit.law_choice->preferred, nullptr);
   EXPECT_EQ(fit.FindFinding("other_law", "better"), nullptr);
 }

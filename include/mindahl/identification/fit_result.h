@@ -21,27 +21,24 @@ namespace mindahl::identification {
 /// States whether a record follows Masing's law (Mindlin's, Full-Dahl) or Dahl's own. For the same
 /// loop σ and Tc of the two laws differ by factors of up to 2^α and 2.
 struct LawChoice {
-  /// True if the record distinguishes them.
-  bool decided = false;
   /// The law that the record follows: the fitted one or `alternative`; null if undecided.
   const models::FrictionModel* preferred = nullptr;
 
   // The other law:
   const models::FrictionModel* alternative = nullptr;
   models::BranchLaw law;  ///< its σ, α, Tc
-  /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
-  /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
-  /// It may exceed the limit of decision without a decision: the laws then differ in the first
-  /// stroke alone, whose earlier loading is not recorded.
+  /// AICc of the other law minus that of the fitted one, > 0 if the fitted one is better. Empty if
+  /// the other was not fitted: on a steady loop of one amplitude both give the same curve. It may
+  /// be large without a decision if they differ in a first stroke of unrecorded loading alone.
   std::optional<double> delta_aicc;
 
-  [[nodiscard]] bool prefers_alternative() const { return decided && preferred == alternative; }
+  [[nodiscard]] bool decided() const { return preferred != nullptr; }
+  [[nodiscard]] bool prefers_alternative() const { return decided() && preferred == alternative; }
 };
 
 /// How the search of a fit ended, as Ceres reports it.
 struct SolverReport {
-  /// "tiny_solver" (ceres::TinySolver), "solve" (ceres::Solve), or "none" where every parameter
-  /// that is not linear is fixed.
+  /// "tiny_solver" or "solve" (of Ceres); "none" where all that is not linear is fixed.
   std::string_view solver = "none";
   /// Ceres' termination type: CONVERGENCE, NO_CONVERGENCE, FAILURE; "not run".
   std::string_view termination = "not run";
@@ -93,8 +90,7 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 struct RecordFit : loop::RecordReading {
   /// True if its motion turns between samples, as these show it, and not at the outermost ones.
   bool turns_between = false;
-  /// [m], in a fit of the displacement: where the law has the contact under the force that was
-  /// measured, offsets included; else empty.
+  /// [m] In a fit of the displacement: where the law has the contact, offsets included; else empty.
   std::vector<double> fitted_displacement;
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
   double load_ratio = 1.0;            ///< load over the mean load of a load series; else 1
@@ -106,13 +102,12 @@ struct RecordFit : loop::RecordReading {
   std::vector<double> residual;  ///< fitted − measured [unit of the response]
 };
 
-/// Holds the result of a fit. By default it has not converged; values that a depth does not compute
-/// are empty.
+/// Holds the result of a fit, by default not converged; what a depth does not compute is empty.
 struct FitResult {
   Depth depth = Depth::kFull;
   double confidence = 0.95;  ///< confidence of every interval
   bool converged = false;
-  SolverReport solver;  ///< how the search ended, and where it began
+  SolverReport solver;
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
@@ -120,8 +115,7 @@ struct FitResult {
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
   models::SeriesSpring rig;  ///< rigid where there is none
-  /// Mean of the records' normal loads [N], to which σ and Tc of a load series belong; empty where
-  /// not all are known.
+  /// Mean normal load [N], to which σ and Tc of a load series belong; empty unless all are known.
   std::optional<double> normal_load;
   double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, without meaning, if the records have one load
   double rms = 0.0;            ///< rms of the residuals that count [N or m], unweighted
@@ -129,8 +123,7 @@ struct FitResult {
   /// but with noise of the displacement the rms of the weighted residuals over the geometric mean
   /// of the roots of their weights.
   double likelihood_rms = 0.0;
-  double force_noise = 0.0;  ///< [N], known or estimated, of all records; 0 in a fit of the
-                             ///< displacement
+  double force_noise = 0.0;  ///< [N], known or estimated, of all records; 0 of a displacement
   std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
@@ -163,7 +156,9 @@ struct FitResult {
   [[nodiscard]] const RecordFit& WidestRecord() const;
 
   /// Returns the law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
-  [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
+  [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const {
+    return models::AtLoad(law, record.load_ratio, load_exponent);
+  }
 
   /// Returns the largest step of an encoder that read a displacement [m]; 0 where none did.
   [[nodiscard]] double EncoderStep() const;

@@ -402,7 +402,7 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
 }
 
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
-  if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
+  if (!choice || (choice->decided() && !choice->prefers_alternative())) return std::nullopt;
   const bool is_better = choice->prefers_alternative();
   return Finding{.code = "other_law",
                  .severity = is_better ? Severity::kWarning : Severity::kNote,
