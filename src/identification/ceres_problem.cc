@@ -9,9 +9,8 @@
 #include "core/refuse.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/unprojected_residual.h"
+#include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
-#include "mindahl/identification/fit.h"
-#include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
 
@@ -23,29 +22,19 @@ double CeresParameter::ThetaAt(double value) const {
   return positive ? std::log(value / scale) : (value - reference) / scale;
 }
 
-/// The problem of a fit, made again from its records.
 struct CeresProblem::State {
-  loop::PreparedRecords prepared;
   ScaledRecords data;
   std::optional<Problem> problem;
   double residual_unit = 1.0;  // [units of the data]
   std::vector<CeresParameter> parameters;
 };
 
-CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& given,
+CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
                            const FitResult& fit, double residual_unit)
     : state_(std::make_unique<State>()) {
   RequirePositive("residual unit", residual_unit);
-  FitOptions options = given;
-  options.preparation.force_sense = fit.force_sense;
-  auto& [prepared, data, problem, unit, values] = *state_;
-  prepared = loop::Prepare(records, options.preparation);
-  LeaveOutBeyondLags(options, prepared);
-  data = Scale(prepared, options);
-  AddColumns(options, prepared, data);
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    data.records[r].turns_between = fit.records[r].turns_between;
-  }
+  auto& [data, problem, unit, values] = *state_;
+  data = ScaledAsFitted(records, options, options, fit);
   problem.emplace(data, options, fit.initial_state);
   unit = residual_unit / data.response_unit();
   const Parameters& parameters = problem->parameters;

@@ -5,9 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <ranges>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,13 +15,10 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
-#include "identification/problem/scaled_records.h"
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
 namespace {
@@ -31,20 +26,18 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
-/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load, and
-/// noise of which squares overflow.
+/// Refuses loads that vary in a fit of the displacement, and noise whose squares overflow.
 void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
-  const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
-  if (is_forced && (data.is_load_series || data.load_varies || varies)) {
+  if (data.is_forced() && (data.is_load_series || data.load_varies || varies)) {
     throw InvalidArgument(
         "the normal load differs or varies, which a fit of the displacement does not model: fit "
         "the records of one load, or fit the force");
   }
   const std::optional<double> noise = options.response_noise();
   if (!noise || *noise / data.response_unit() < 1e100) return;
-  ThrowInvalid(is_forced ? "displacement noise [m]" : "force_noise [N]", *noise,
+  ThrowInvalid(data.is_forced() ? "displacement noise [m]" : "force_noise [N]", *noise,
                "must be below 1e100 times half the range of the records");
 }
 
@@ -63,8 +56,7 @@ void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRe
   }
 }
 
-/// Measures the loops without the forces of columns and terms whose factors are given: what is left
-/// is the contact's.
+/// Measures the loops without forces whose factors are given: what is left is the contact's.
 void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& data,
                               loop::PreparedRecords& prepared) {
   if (options.fixed.empty() || data.is_forced()) return;
@@ -95,12 +87,11 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
   }
 }
 
-/// Fills the fitted response and the residuals as the files have them, of every sample, and their
-/// rms.
+/// Fills the fitted response and the residuals of every sample as the files have them; their rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
-  const Problem& problem = solved.best.problem;
+  const auto& [problem, starts, solution] = solved.best;
   const ScaledRecords& data = *problem.data;
-  Eigen::VectorXd residuals = Predict(problem, solved.solution().theta);
+  Eigen::VectorXd residuals = Predict(problem, solution.theta);
   const std::span<double> of_all(residuals.data(), problem.size());
   TakeOffMeasured(data, of_all);
   const bool is_forced = data.is_forced();
@@ -122,15 +113,15 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   }
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
   result.likelihood_rms = result.rms;
-  if (attempt.drawn == nullptr || attempt.options.loss != Loss::kNone) return;
+  if (!attempt.options.preparation.drawn || attempt.options.loss != Loss::kNone) return;
   double log_weights = 0.0;
   for (const ScaledRecord& record : data.records) {
     for (const double weight : record.root_weight) log_weights += weight > 0 ? std::log(weight) : 0;
   }
-  const double squares_of_priors = problem.parameters.PriorCost(solved.solution().theta);
+  const double squares_of_priors = problem.parameters.PriorCost(solution.theta);
   const auto count = static_cast<double>(data.counted);
   result.likelihood_rms = data.response_unit() * std::exp(-log_weights / count) *
-                          std::sqrt((solved.solution().sum_of_squares - squares_of_priors) / count);
+                          std::sqrt((solution.sum_of_squares - squares_of_priors) / count);
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
@@ -147,8 +138,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
   }
 }
 
-/// Assembles what a solution says by itself: values, residuals and what the records show without a
-/// model.
+/// Assembles what a solution says by itself, and what the records show without a model.
 FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   const ScaledRecords& data = attempt.data;
   const Problem& problem = solved.best.problem;
@@ -162,8 +152,7 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   FillRecords(attempt, solved, result);
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
   result.findings = FindMissingRows(attempt.prepared.records);
-  const bool is_judged = attempt.depth >= Depth::kIntervals;
-  if (is_judged) {
+  if (attempt.depth >= Depth::kIntervals) {
     Append(result.findings, FindInRecords(result.records));
     Append(result.findings, FindVaryingLoads(data));
   }
@@ -192,66 +181,45 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   return result;
 }
 
-/// True if the record determines the law, as far as the depth shows. Where it does not, the
-/// likelihood is a valley with several minima.
+/// True if the record determines the law, as far as the depth shows: else there are several minima.
 bool TellsTheLaw(const FitResult& result) {
-  if (result.depth < Depth::kErrors) return true;
-  constexpr std::size_t kOfLaw = 3;  // σ, α and Tc are the first
-  return std::ranges::all_of(result.parameters | std::views::take(kOfLaw),
+  return result.depth < Depth::kErrors ||
+         std::ranges::all_of(result.parameters | std::views::take(kSlipForce + 1),
                              &ParameterEstimate::is_known);
 }
 
-/// Returns the noise that priors weigh against [N or m]: that of a fit without them.
-double NoiseWithoutPriors(std::span<const RecordView> records, const FitOptions& options) {
-  FitOptions open = options;
-  open.priors.clear();
-  const FitResult fit = Fitter(open).Fit(records, Depth::kEstimate);
-  if (fit.response == loop::Channel::kForce) return fit.force_noise;
-  return fit.records.front().displacement_noise;
-}
-
 /// Fits once, with the slip force wherever the search finds it.
-FitResult FitOnce(std::span<const RecordView> records, Depth depth, const FitOptions& options) {
+FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions options) {
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  const std::shared_ptr<const loop::DrawnReadings> drawn =
-      options.preparation.drawn ? options.preparation.drawn : loop::DrawReadings(prepared);
+  std::shared_ptr<const loop::DrawnReadings>& drawn = options.preparation.drawn;
+  if (!drawn) drawn = loop::DrawReadings(prepared);
   LeaveOutBeyondLags(options, prepared);
   ScaledRecords data = Scale(prepared, options);
   AddColumns(options, prepared, data);
   if (!options.priors.empty()) {
-    data.prior_noise = NoiseWithoutPriors(records, options) / data.response_unit();
+    FitOptions open = options;
+    open.priors.clear();
+    const FitResult fit = Fitter(open).Fit(records, Depth::kEstimate);
+    data.prior_noise =
+        (data.is_forced() ? fit.records.front().displacement_noise : fit.force_noise) /
+        data.response_unit();
   }
   RequireRecords(options, data);
   MeasureBesideKnownForces(options, data, prepared);
   RequireRigStifferThanLoop(options, prepared);
 
-  const Attempt attempt{options, depth, prepared, drawn.get(), data};
+  const Attempt attempt{options, depth, prepared, data};
   SolvedFit solved = SolveFit(attempt);
   FitResult result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return result;
   result = Infer(attempt, std::move(solved), std::move(result));
   if (depth < Depth::kFull) return result;
-  FitOptions others = options;
-  others.preparation.drawn = drawn;
-  result.law_choice = CompareLaws(records, others, data, result);
+  result.law_choice = CompareLaws(records, options, data, result);
   // An inadequate model reports a choice against it only: the other law may be the reason.
   const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
-  if (result.law_choice && is_inadequate && !result.law_choice->prefers_alternative()) {
-    result.law_choice.reset();
-  }
+  if (is_inadequate && !result.prefers_other_law()) result.law_choice.reset();
   Append(result.findings, FindOtherLaw(result.law_choice));
   return result;
-}
-
-/// Cuts intervals at bounds that are given: what the model misses and rivals widened them by.
-void CutAtBounds(const FitOptions& options, FitResult& result) {
-  for (ParameterEstimate& estimate : result.parameters) {
-    const auto bounds = options.bounds.find(estimate.name);
-    if (bounds == options.bounds.end()) continue;
-    const auto& [lower, upper] = bounds->second;
-    if (estimate.lower95) estimate.lower95 = std::clamp(*estimate.lower95, lower, upper);
-    if (estimate.upper95) estimate.upper95 = std::clamp(*estimate.upper95, lower, upper);
-  }
 }
 
 /// Fits, and once more where the slip force runs away from what was measured.
@@ -261,12 +229,19 @@ FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitO
     result = FitOnce(records, depth, *within);
     // The largest force is known no better than the law follows it.
     if (IsFitted(result) && result.parameters[kSlipForce].upper95) {
-      ParameterEstimate& slip_force = result.parameters[kSlipForce];
-      Include(slip_force,
-              {.lower = slip_force.value, .upper = slip_force.value + result.adequacy.misfit});
+      const double value = result.parameters[kSlipForce].value;
+      Include(result.parameters[kSlipForce],
+              {.lower = value, .upper = value + result.adequacy.misfit});
     }
   }
-  CutAtBounds(options, result);
+  // What the model misses and rivals widened intervals beyond bounds that are given.
+  for (const auto& [name, bounds] : options.bounds) {
+    const auto estimate = std::ranges::find(result.parameters, name, &ParameterEstimate::name);
+    if (estimate == result.parameters.end()) continue;
+    for (std::optional<double>* const end : {&estimate->lower95, &estimate->upper95}) {
+      if (*end) *end = std::clamp(**end, bounds.lower, bounds.upper);
+    }
+  }
   return result;
 }
 
@@ -291,8 +266,9 @@ void Validate(const FitOptions& options) {
   loop::Validate(options.preparation);
   for (const std::string& name : options.terms) {
     const Term* const term = FindTerm(name, options.response());
-    if (term == nullptr || term->of_column || term->presence == Presence::kAlways ||
-        term->presence == Presence::kOffsets || term->presence == Presence::kLoadSeries) {
+    using enum Presence;
+    if (term == nullptr || term->of_column || term->presence == kAlways ||
+        term->presence == kOffsets || term->presence == kLoadSeries) {
       throw InvalidArgument(fmt::format("'{}' is not a term that can be added", name));
     }
     RequirePlace(*term, options.response());
@@ -321,8 +297,7 @@ void Validate(const FitOptions& options) {
 Fitter::Fitter(FitOptions options) : options_(std::move(options)) { Validate(options_); }
 
 const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
-  result_ = FitWithin(records, depth, options_);
-  return result_;
+  return result_ = FitWithin(records, depth, options_);
 }
 
 const FitResult& Fitter::Continue(const RecordView& record, Depth depth) {
@@ -337,9 +312,8 @@ const FitResult& Fitter::Continue(const RecordView& record, Depth depth) {
 }
 
 FitResult Fit(std::span<const loop::Record> records, const FitOptions& options, Depth depth) {
-  std::vector<RecordView> views(records.begin(), records.end());
-  Fitter fitter(options);
-  return fitter.Fit(views, depth);
+  const std::vector<RecordView> views(records.begin(), records.end());
+  return Fitter(options).Fit(views, depth);
 }
 
 }  // namespace mindahl::identification

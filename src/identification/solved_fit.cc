@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/motion.h"
 #include "mindahl/core/error.h"
@@ -34,16 +32,6 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
                   counted, free, without));
 }
 
-/// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
-void RequireToldAsymmetry(const Problem& problem) {
-  if (!problem.parameters[kAsymmetry].confounded) return;
-  throw InvalidArgument(
-      "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
-      "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "
-      "force_offset=0, or fit a record that includes the first loading of the unloaded contact, "
-      "with --initial-state virgin");
-}
-
 /// Returns the initial state that the options name, else both where both are possible.
 std::vector<InitialState> StatesToTry(const Attempt& attempt) {
   if (attempt.options.initial_state) return {*attempt.options.initial_state};
@@ -57,21 +45,19 @@ std::vector<InitialState> StatesToTry(const Attempt& attempt) {
   return states;
 }
 
-/// True if the search of where a contact was unloaded stopped at a limit of its own: it was rather
-/// cycled before the record.
+/// True if the search of where a contact was unloaded stopped at its limit: it had been cycled.
 bool IsUnloadedAtLimit(const Candidate& candidate) {
   if (!std::isfinite(candidate.solution.sum_of_squares)) return false;  // none was made
-  const Parameters& parameters = candidate.problem.parameters;
-  for (std::size_t r = 0; r < candidate.problem.data->records.size(); ++r) {
-    const std::size_t p = parameters.PositionOfOrigin(r);
-    const BoundSide side = SideOf(parameters[p], candidate.solution.theta[p]);
-    if (IsSearchLimit(parameters[p], side)) return true;
+  const auto& [problem, starts, solution] = candidate;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const std::size_t p = problem.parameters.PositionOfOrigin(r);
+    const Parameter& origin = problem.parameters[p];
+    if (IsSearchLimit(origin, SideOf(origin, solution.theta[p]))) return true;
   }
   return false;
 }
 
-/// True if the energy of all loops is clearly negative: a contact dissipates, so that the sign of
-/// the force is wrong.
+/// True if the energy of all loops is clearly negative: the sign of the force is wrong.
 bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared) {
   constexpr double kClear = 0.2;  // [W/(4XT*)]: noise alone gives a tenth
   if (!options.terms.empty() || !options.covariates.empty() || !options.fixed.empty()) return false;
@@ -126,17 +112,15 @@ SolvedFit FitBestState(const Attempt& attempt) {
                          candidate.problem.parameters.free().size());
   };
   const double gain = criterion(steady) - criterion(virgin);
-  // If the search moved the unloaded position to its own limit, the virgin state is chosen only if
-  // it fits better by ΔAICc = 10.
+  // Unloaded at the search's own limit, the virgin state must be better by ΔAICc = 10.
   const bool is_doubtful = steady.solution.converged && IsUnloadedAtLimit(virgin);
   const bool is_virgin = gain > (is_doubtful ? options.thresholds.undecided : 0.0);
-  Candidate& best = is_virgin ? virgin : steady;
   const Candidate& other = is_virgin ? steady : virgin;
-  std::optional<models::BranchLaw> law;
+  SolvedFit solved{.best = std::move(is_virgin ? virgin : steady)};
   if (std::abs(gain) < options.thresholds.indistinguishable && other.solution.converged) {
-    law = other.problem.parameters.LawAt(other.solution.theta);
+    solved.of_other_state = other.problem.parameters.LawAt(other.solution.theta);
   }
-  return {.best = std::move(best), .of_other_state = law};
+  return solved;
 }
 
 /// Fits once more with turns between samples, where these may matter, and keeps that unless it fits
@@ -147,17 +131,15 @@ void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
   constexpr double kMatters = 0.2;
   constexpr double kClearly = 4.0;  // of twice the log-likelihood
   Solution& solution = candidate.solution;
+  const auto samples = static_cast<double>(attempt.data.counted);
   const double farthest = TurnBetweenSamples(attempt.data);
   const double shift = farthest * std::exp(solution.theta[kStiffness]);
-  const double error =
-      std::sqrt(solution.sum_of_squares) / static_cast<double>(attempt.data.counted);
-  if (shift > kMatters * error) {
+  if (shift > kMatters * (std::sqrt(solution.sum_of_squares) / samples)) {
     Solution between =
         Solver(candidate.problem).Solve(solution.theta, SolverOptionsOf(attempt.options));
     const double ratio = between.sum_of_squares / solution.sum_of_squares;
     const double rate = std::exp(between.theta[kStiffness] - between.theta[kSlipForce]);
-    if (farthest * rate < 1 &&
-        static_cast<double>(attempt.data.counted) * std::log(ratio) < kClearly) {
+    if (farthest * rate < 1 && samples * std::log(ratio) < kClearly) {
       solution = std::move(between);
       return;
     }
@@ -167,16 +149,36 @@ void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
 
 }  // namespace
 
+ScaledRecords ScaledAsFitted(std::span<const loop::RecordView> records, FitOptions options,
+                             const FitOptions& with, const FitResult& fit) {
+  options.preparation.force_sense = fit.force_sense;
+  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
+  LeaveOutBeyondLags(options, prepared);
+  ScaledRecords data = Scale(prepared, options);
+  AddColumns(with, prepared, data);
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    data.records[r].turns_between = fit.records[r].turns_between;
+  }
+  return data;
+}
+
 SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   SolvedFit solved = FitBestState(attempt);
   Candidate& best = solved.best;
-  RequireToldAsymmetry(best.problem);
+  if (best.problem.parameters[kAsymmetry].confounded) {
+    throw InvalidArgument(
+        "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
+        "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "
+        "force_offset=0, or fit a record that includes the first loading of the unloaded contact, "
+        "with --initial-state virgin");
+  }
   if (!std::isfinite(best.solution.sum_of_squares)) return solved;
   TryTurnsBetweenSamples(attempt, best);
   const auto fit_with_weights = [&] {
-    solved.is_settled = FitWithWeights(best.problem, attempt.data, options, attempt.drawn,
-                                       best.solution, solved.noise);
+    solved.is_settled =
+        FitWithWeights(best.problem, attempt.data, options, options.preparation.drawn.get(),
+                       best.solution, solved.noise);
   };
   fit_with_weights();
   if (options.loss == Loss::kNone) return solved;

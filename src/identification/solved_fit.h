@@ -16,10 +16,9 @@ namespace mindahl::identification {
 
 /// Holds the inputs of a fit while it is made.
 struct Attempt {
-  const FitOptions& options;
+  const FitOptions& options;  // with drawn readings of the records
   Depth depth;
   const loop::PreparedRecords& prepared;
-  const loop::DrawnReadings* drawn;  // of these; null where exact
   ScaledRecords& data;
 };
 
@@ -34,20 +33,25 @@ struct SolvedFit {
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };
 
+/// Returns the records of a fit in its units, with the force's sign and the turns that it found.
+/// @param with  options whose terms' columns the records have
+/// @throws InvalidArgument as the fit would
+ScaledRecords ScaledAsFitted(std::span<const loop::RecordView> records, FitOptions options,
+                             const FitOptions& with, const FitResult& fit);
+
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers. Samples
 /// are weighted where the displacement is inexact or the loss is robust.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
 
-/// Adds to what a solution says by itself its noise, errors, intervals and residuals and, by the
-/// depth, adequacy, profiles and tests: each depth does what the one before does, and more.
+/// Adds to what a solution says by itself its noise, errors and intervals and, by the depth,
+/// adequacy, profiles and tests.
 /// @param result  values, residuals and what the records show without a model, as assembled
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
 
-/// Masing's law against Dahl's own, whichever of them was fitted, by AICc on the effective samples
-/// of the one that leaves less. The other is fitted too where the record may distinguish them, from
-/// where its loop at the widest amplitude would be the same; of one amplitude it follows in closed
-/// form.
+/// Masing's law against Dahl's own, whichever was fitted, by AICc on the effective samples of the
+/// one that leaves less. The other is fitted too where the record may distinguish them, from where
+/// its loop at the widest amplitude is the same; of one amplitude it follows in closed form.
 /// @param data  the records, scaled
 /// @param fit   of them, from Depth::kErrors on
 /// @returns empty where the laws are one (α = 0), and where they are not compared

@@ -7,10 +7,9 @@
 #include "identification/gram/gram.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
-#include "identification/problem/motion.h"
 #include "identification/problem/problem.h"
+#include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
-#include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
 namespace {
@@ -18,23 +17,18 @@ namespace {
 /// Takes a column for one that the others have where less of its norm is its own.
 constexpr double kOwnShare = 3e-5;
 
-/// Returns the θ at which a term has no effect, which of an exponent is any: where it starts.
-double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
-  const Parameter& parameter = parameters[p];
-  if (p == kRig) return parameter.upper;
-  const bool is_any = parameter.term->positive || parameter.is_exponent();
-  return is_any ? parameter.theta : parameter.ToTheta(0.0);
-}
-
-/// θ of a problem at the fit's solution, with terms that the fit does not have without effect.
+/// θ of a problem at the fit's solution, with terms that the fit does not have without effect: an
+/// exponent, of which that is any value, where it starts.
 std::vector<double> ThetaOf(const Problem& problem, const FitResult& fit) {
-  const Parameters& parameters = problem.parameters;
-  std::vector<double> theta(parameters.size());
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ParameterEstimate* const fitted = fit.Find(parameters.NameOf(p));
-    theta[p] = fitted != nullptr     ? parameters[p].ToTheta(fitted->value)
-               : parameters[p].fixed ? parameters[p].theta
-                                     : ThetaWithoutEffect(parameters, p);
+  std::vector<double> theta;
+  for (const Parameter& parameter : problem.parameters) {
+    const std::size_t p = theta.size();
+    const ParameterEstimate* const fitted = fit.Find(problem.parameters.NameOf(p));
+    const bool stays = parameter.fixed || parameter.term->positive || parameter.is_exponent();
+    theta.push_back(fitted != nullptr               ? parameter.ToTheta(fitted->value)
+                    : p == kRig && !parameter.fixed ? parameter.upper
+                    : stays                         ? parameter.theta
+                                                    : parameter.ToTheta(0.0));
   }
   return theta;
 }
@@ -49,9 +43,9 @@ TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> insi
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
   for (std::size_t c = 0; c < added.size(); ++c) {
-    const bool is_lower = step.omitted[static_cast<Eigen::Index>(c)] < 0;
     const Term& term = *problem.parameters[added[c]].term;
-    score.is_negative = score.is_negative || (is_lower && term.is_never_negative);
+    const bool is_lower = step.omitted[static_cast<Eigen::Index>(c)] < 0;
+    score.is_negative |= is_lower && term.is_never_negative;
   }
   for (std::size_t j = 0; j < inside.size() && inside[j] <= kSlipForce; ++j) {
     score.law[inside[j]] = step.law[static_cast<Eigen::Index>(j)];
@@ -84,13 +78,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
                                                  std::span<const TermChoice> choices) {
   FitOptions with_all = options;
   for (const TermChoice& choice : choices) with_all = choice.AddedTo(std::move(with_all));
-  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  LeaveOutBeyondLags(options, prepared);
-  ScaledRecords data = Scale(prepared, options);
-  AddColumns(with_all, prepared, data);
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    data.records[r].turns_between = fit.records[r].turns_between;
-  }
+  const ScaledRecords data = ScaledAsFitted(records, options, with_all, fit);
   const auto problem_of = [&](FitOptions with) {
     with.covariates = with_all.covariates;
     with.start.clear();

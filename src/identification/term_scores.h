@@ -32,7 +32,7 @@ struct TermScore {
 
 /// Scores choices by one Gauss-Newton step from a fit that has none of them, by the products of its
 /// Jacobian and the derivatives by their parameters. Exact for terms that are linear.
-/// @param options  of the fit, with the sign of the force that was found
+/// @param options  of the fit
 /// @returns a score a choice; nothing where it has no effect
 /// @throws InvalidArgument as the fit would
 std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordView> records,
