@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
-#include <string_view>
+#include <ranges>
 #include <utility>
 
 #include "core/extremes.h"
@@ -26,8 +27,7 @@ using loop::RecordView;
 
 namespace {
 
-/// Most terms that are added one after the other.
-constexpr std::size_t kMostAlone = 2;
+constexpr std::size_t kMostAlone = 2;  // terms that are added one after the other
 
 /// Lists what measured loops have in addition to the law. Which few of these gain most changes with
 /// the excerpt, and Tc with them: where no few terms leave but noise, all are fitted together.
@@ -45,8 +45,7 @@ struct TermCandidate : ConsideredTerm {
   }
 };
 
-/// Names what keeps a column out: it repeats another one, or follows the force, of which its factor
-/// would take a part.
+/// Names what keeps a column out: it repeats another one, or follows the contact's force.
 /// @param before  covariates that are candidates
 std::string_view ObstacleToColumn(const loop::Covariate& column, const RecordView& record,
                                   const FitResult& law, std::span<const std::string> before,
@@ -55,7 +54,7 @@ std::string_view ObstacleToColumn(const loop::Covariate& column, const RecordVie
     return !other.empty() && AreOneChannel(column.values, other);
   };
   const auto repeats_column = [&](const loop::Covariate& other) {
-    return std::ranges::find(before, other.name) != before.end() && repeats(other.values);
+    return std::ranges::count(before, other.name) > 0 && repeats(other.values);
   };
   if (repeats(record.displacement) || repeats(record.force) || repeats(record.time) ||
       std::ranges::any_of(record.covariates, repeats_column)) {
@@ -80,10 +79,9 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
   }
   std::vector<std::string> columns = options.covariates;
   for (const loop::Covariate& column : records.front().covariates) {
-    const bool is_there = std::ranges::find(columns, column.name) != columns.end();
+    const bool is_there = std::ranges::count(columns, column.name) > 0;
     const bool all_have_it = std::ranges::all_of(records, [&](const RecordView& record) {
-      return std::ranges::find(record.covariates, column.name, &loop::Covariate::name) !=
-             record.covariates.end();
+      return std::ranges::count(record.covariates, column.name, &loop::Covariate::name) > 0;
     });
     const auto [lowest, highest] = ExtremesOf(column.values);
     if (is_there || !all_have_it || !(highest > lowest)) continue;
@@ -98,22 +96,18 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
   return candidates;
 }
 
-/// True if hardly more than white noise is left.
 bool IsNearlyWhite(const FitResult& fit, const Thresholds& thresholds) {
   return fit.rms * fit.rms <= thresholds.nearly_white * WhiteVariance(fit);
 }
 
-/// True if the interval of the slip force is closed.
-/// @param widest_ratio  of the ends of an interval that is closed
-bool BoundsSlipForce(const FitResult& fit, double widest_ratio) {
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+bool BoundsSlipForce(const FitResult& fit, const Thresholds& thresholds) {
+  const ParameterEstimate& slip_force = fit.parameters[kSlipForce];
   return slip_force.lower95 && slip_force.upper95 &&
-         *slip_force.upper95 <= widest_ratio * *slip_force.lower95;
+         *slip_force.upper95 <= thresholds.widest_ratio * *slip_force.lower95;
 }
 
-/// True if the search of a term stopped at a bound of the program's own: no parameter would be
-/// known. Where a contact that slides was unloaded is no such term, and others end where the theory
-/// does.
+/// True if the search of a term stopped at a bound of the program's own: no parameter is known.
+/// Where a sliding contact was unloaded is no such term; others end where the theory does.
 bool StopsAtLimit(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
     const Term& term = *TermOfParameter(estimate.name);
@@ -123,37 +117,16 @@ bool StopsAtLimit(const FitResult& fit) {
   });
 }
 
-/// True of a mass or a damping below zero.
-bool IsUnphysical(const FitResult& fit) {
-  return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    return TermOfParameter(estimate.name)->is_never_negative && estimate.value < 0 &&
-           estimate.status != ParameterStatus::kFixed;
-  });
-}
-
-/// Holds the law that another candidate of a round gives in place of the one that was added.
-struct Alternative {
-  std::string name;
-  std::array<double, 3> law{};  // differences of θ of σ, α and Tc
-  double rms = 0.0;             // with it, to first order
-};
-
-/// Judges the parameters after intervals were extended.
-void JudgeAgain(const Thresholds& thresholds, FitResult& fit) {
-  Append(fit.findings, FindWideIntervals(fit, thresholds));
-  Judge(fit.parameters, fit.findings);
-}
-
-/// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
-/// slides has carried.
-void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
+/// Includes what alternatives make of the law; Tc no further than a loop that slides carries.
+/// @param alternatives  their scores have steps from the fit's law
+void IncludeAlternatives(std::span<const TermCandidate> alternatives, const Thresholds& thresholds,
                          FitResult& fit) {
   const std::optional<double> half_gap = fit.MeasuredHalfGap();
-  for (const Alternative& alternative : alternatives) {
+  for (const TermCandidate& alternative : alternatives) {
     for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
       ParameterEstimate& estimate = fit.parameters[p];
       if (!estimate.lower95 || !estimate.upper95) continue;
-      const double step = std::clamp(alternative.law[p], -kFarthestStep, kFarthestStep);
+      const double step = std::clamp(alternative.score->law[p], -kFarthestStep, kFarthestStep);
       double value =
           p == kShape ? std::max(0.0, estimate.value + step) : estimate.value * std::exp(step);
       if (p == kSlipForce && half_gap && loop::Slides(fit.WidestRecord().facts)) {
@@ -163,7 +136,8 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
       Include(estimate, {.lower = value, .upper = value});
     }
   }
-  JudgeAgain(thresholds, fit);
+  Append(fit.findings, FindWideIntervals(fit, thresholds));
+  Judge(fit.parameters, fit.findings);
 }
 
 /// Adds terms to a law: a few one after the other, or all common ones.
@@ -174,18 +148,15 @@ class Selection {
       : records_(records),
         drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
         facts_(law.WidestRecord().facts),
-        law_bounds_slip_force_(BoundsSlipForce(law, options.thresholds.widest_ratio)),
+        law_bounds_slip_force_(BoundsSlipForce(law, options.thresholds)),
         candidates_(CandidatesOf(records, options, law)),
         base_{.options = options, .fit = law} {
-    // The law is fitted again as the candidates are, without an upper bound on the slip force: a
-    // missing term may drive it beyond the measured force.
+    // Fitted as the candidates are, without an upper bound on Tc: a missing term may drive it high.
     base_ = law_ = FitWith({});
   }
 
-  /// @param most  to be added
   TermSelection Run(FitResult law, MostTerms most) {
-    TermSelection result;
-    result.options = base_.options;
+    TermSelection result{.options = base_.options};
     while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
     }
     FitResult last;
@@ -197,9 +168,9 @@ class Selection {
       // One term that leaves but noise rules out what leaves much more.
       const bool is_settled =
           added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
-      std::erase_if(alternatives_, [&](const Alternative& alternative) {
+      std::erase_if(alternatives_, [&](const TermCandidate& alternative) {
         return IsAdded(alternative.name) ||
-               (is_settled && alternative.rms > Limits().larger_rms * last.rms);
+               (is_settled && alternative.score->rms > Limits().larger_rms * last.rms);
       });
       IncludeAlternatives(alternatives_, Limits(), last);
       result.fit = std::move(last);
@@ -214,22 +185,18 @@ class Selection {
       candidate.obstacle = candidate.added ? "" : "confounded";
     }
     result.considered.assign(candidates_.begin(), candidates_.end());
-    std::ranges::stable_sort(result.considered, std::greater(), &ConsideredTerm::gain);
     std::ranges::stable_sort(result.considered, {}, [&](const ConsideredTerm& term) {
-      return std::ranges::find(result.added, term.name) - result.added.begin();
+      return std::pair(std::ranges::find(result.added, term.name), -term.gain);
     });
     return result;
   }
 
-  /// Fits each of the few candidates that promise most, and returns those that can be added, the
-  /// one that gains most first; the gain of a column that follows the force counts twice.
   std::vector<std::string> Likely(std::size_t most) {
     std::vector<TermCandidate*> tried = Score();
     std::erase_if(tried, [&](TermCandidate* candidate) {
       return candidate->gain < Limits().worthwhile_gain || IsRefused(*candidate);
     });
-    // A linear step does not predict the gain of a column whose force the law has taken up: it is
-    // fitted first.
+    // A column whose force the law has taken up is fitted first: a linear step fails to predict it.
     const auto column = std::ranges::find_if(candidates_, &TermCandidate::FollowsForce);
     if (column != candidates_.end() && IsFitted(base_.fit)) tried.insert(tried.begin(), &*column);
     tried.resize(std::min(tried.size(), most));
@@ -245,38 +212,32 @@ class Selection {
       const double gain = base_.fit.rms - model.fit.rms;
       by_gain.emplace(is_column ? gain / Limits().rival : gain, candidate->name);
     }
-    std::vector<std::string> names;
-    for (auto& [gain, name] : by_gain) names.push_back(std::move(name));
-    return names;
+    const auto names = by_gain | std::views::values;
+    return {names.begin(), names.end()};
   }
 
  private:
   /// A model of the selection, fitted at Depth::kEstimate.
   struct Model {
     FitOptions options;  // as the user gives them, with terms
-    FitResult fit;
+    FitResult fit = {};
   };
 
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
   [[nodiscard]] bool IsAdded(std::string_view name) const {
-    return std::ranges::find(added_, name) != added_.end();
+    return std::ranges::count(added_, name) > 0;
   }
   /// True of a loop that slides, a large force of the position beside it or not.
   [[nodiscard]] bool Slides() const { return loop::Slides(facts_) || loop::HasEvenGap(facts_); }
 
-  /// Scores the candidates at the present solution and returns those that have an effect, the best
-  /// first.
+  /// Scores the candidates at the present solution and returns those with an effect, best first.
   std::vector<TermCandidate*> Score() {
     if (!IsFitted(base_.fit) || !base_.fit.converged) return {};
     std::vector<TermChoice> choices;
-    for (TermCandidate& candidate : candidates_) {
-      std::erase_if(candidate.choice.terms,
-                    [&](const std::string& term) { return HasTerm(base_.options, term); });
+    for (const TermCandidate& candidate : candidates_) {
       choices.push_back(IsAdded(candidate.name) ? TermChoice() : candidate.choice);
     }
-    FitOptions as_fitted = base_.options;
-    as_fitted.preparation.force_sense = base_.fit.force_sense;
-    const auto scores = ScoreTerms(records_, base_.fit, as_fitted, choices);
+    const auto scores = ScoreTerms(records_, base_.fit, base_.options, choices);
     std::vector<TermCandidate*> scored;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       TermCandidate& candidate = candidates_[c];
@@ -308,11 +269,11 @@ class Selection {
     const TermCandidate& most = *candidates.front();
     TermCandidate* best = candidates.front();
     for (TermCandidate* const one : candidates) {
-      const bool is_part = one->choice.covariate.empty() &&
-                           std::ranges::all_of(one->choice.terms, [&](const std::string& term) {
-                             const std::vector<std::string>& all = most.choice.terms;
-                             return std::ranges::find(all, term) != all.end();
-                           });
+      const bool is_part =
+          one->choice.covariate.empty() &&
+          std::ranges::all_of(one->choice.terms, [&](const std::string& term) {
+            return HasTerm(base_.options, term) || std::ranges::count(most.choice.terms, term) > 0;
+          });
       const bool is_smaller = one->score->parameters < best->score->parameters;
       if (is_part && is_smaller && one->gain >= Limits().rival * most.gain) best = one;
     }
@@ -322,7 +283,7 @@ class Selection {
   /// Fits the present model with some more terms.
   /// @param from_here  from its solution, else from starts of its own
   Model FitWith(const TermChoice& choice, bool from_here = true) {
-    Model model{.options = choice.AddedTo(base_.options), .fit = {}};
+    Model model{.options = choice.AddedTo(base_.options)};
     FitOptions options = model.options;
     if (from_here) {
       options.initial_state = base_.fit.initial_state;
@@ -333,8 +294,7 @@ class Selection {
     return model;
   }
 
-  /// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
-  /// loop.
+  /// Returns a fit without parameters if a term is not identifiable or the rig too soft.
   FitResult FitTo(FitOptions options, Depth depth) {
     constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
     options.preparation.drawn = drawn_;
@@ -346,27 +306,29 @@ class Selection {
     }
   }
 
+  [[nodiscard]] bool Gains(const FitResult& fit) const {
+    return fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
+  }
   /// True if Tc leaves the half gap that was measured, and more than noise is left.
   [[nodiscard]] bool Leaves(const FitResult& fit) const {
     return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
            !IsNearlyWhite(fit, Limits());
   }
 
-  [[nodiscard]] bool Gains(const FitResult& fit) const {
-    return fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
-  }
-
   /// Says why a larger model does not replace the present one; empty where it does.
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const {
     const FitResult& fit = model.fit;
     if (!IsFitted(fit) || !fit.converged) return "not_converged";
-    if (IsUnphysical(fit)) return "unphysical";
+    const auto is_unphysical = [](const ParameterEstimate& estimate) {
+      return TermOfParameter(estimate.name)->is_never_negative && estimate.value < 0 &&
+             estimate.status != ParameterStatus::kFixed;
+    };
+    if (std::ranges::any_of(fit.parameters, is_unphysical)) return "unphysical";
     const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
     return Leaves(fit) || stops || !Gains(fit) ? "confounded" : "";
   }
 
-  /// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate
-  /// keeps.
+  /// Moves to a model with a candidate, unless there is an obstacle, which the candidate keeps.
   bool Add(TermCandidate& candidate, Model model) {
     candidate.obstacle = ObstacleTo(model);
     if (!candidate.obstacle.empty()) return false;
@@ -375,17 +337,14 @@ class Selection {
     return true;
   }
 
-  /// Keeps what candidates that gain at least half as much as the one that is added would make of
-  /// the law: the record may have been made by them.
+  /// Keeps the candidates that gain at least half as much as the one that is added, and their laws.
   void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others) {
     for (const TermCandidate* const other : others) {
       const bool is_column = !other->choice.covariate.empty();
       const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
       if (is_column || is_unphysical || other->gain < Limits().rival * added.gain) continue;
-      Alternative& alternative =
-          alternatives_.emplace_back(Alternative{.name = other->name, .rms = other->score->rms});
-      std::ranges::transform(other->score->law, added.score->law, alternative.law.begin(),
-                             std::minus());
+      TermScore& score = *alternatives_.emplace_back(*other).score;
+      std::ranges::transform(score.law, added.score->law, score.law.begin(), std::minus());
     }
   }
 
@@ -419,9 +378,11 @@ class Selection {
     FitOptions options = model.options;
     StartFrom(model.fit, options);
     FitResult last = FitTo(std::move(options), Depth::kFull);
-    const bool is_kept = IsFitted(last) && !Leaves(last) &&
-                         (!law_bounds_slip_force_ || BoundsSlipForce(last, Limits().widest_ratio));
-    return is_kept ? last : FitResult();
+    if (IsFitted(last) && !Leaves(last) &&
+        (!law_bounds_slip_force_ || BoundsSlipForce(last, Limits()))) {
+      return last;
+    }
+    return {};
   }
 
   /// Fits the law with all common terms, which begin without effect, and moves there unless there
@@ -431,22 +392,21 @@ class Selection {
     std::vector<std::string> common;
     TermChoice all;
     for (const TermCandidate& candidate : candidates_) {
-      if (std::ranges::find(kCommonTerms, candidate.name) == kCommonTerms.end()) continue;
+      if (std::ranges::count(kCommonTerms, candidate.name) == 0) continue;
       common.push_back(candidate.name);
-      const std::vector<std::string_view>& terms = FindTermGroup(candidate.name)->terms;
-      all.terms.insert(all.terms.end(), terms.begin(), terms.end());
+      std::ranges::copy(candidate.choice.terms, std::back_inserter(all.terms));
     }
     FitOptions from_terms = all.AddedTo(law_.options);
-    Model model{.options = from_terms, .fit = {}};
+    Model model{.options = from_terms};
     for (const std::string& term : all.terms) {
       const std::optional<double> start = FindTerm(term)->start;
       if (start && !HasTerm(law_.options, term)) from_terms.start[term] = *start;
     }
     model.fit = FitTo(std::move(from_terms), Depth::kEstimate);
-    const bool is_better = Gains(model.fit);
+    if (!Gains(model.fit)) return {};
     const Model added = std::exchange(base_, law_);
     FitResult last;
-    if (is_better && ObstacleTo(model).empty()) last = FitLast(model);
+    if (ObstacleTo(model).empty()) last = FitLast(model);
     if (!IsFitted(last)) {
       base_ = added;
       return {};
@@ -462,19 +422,19 @@ class Selection {
   loop::LoopFacts facts_;                             // of the widest record
   bool law_bounds_slip_force_;                        // without terms
   std::vector<TermCandidate> candidates_;
-  Model law_;                       // without terms
-  Model base_;                      // with the terms that were added
-  std::vector<std::string> added_;  // names of these candidates, in their order
-  std::vector<Alternative> alternatives_;
+  Model law_;                                // without terms
+  Model base_;                               // with the terms that were added
+  std::vector<std::string> added_;           // names of these candidates, in their order
+  std::vector<TermCandidate> alternatives_;  // to the first that was added of a round
 };
 
 }  // namespace
 
 TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
                           FitResult fit, MostTerms most) {
-  const bool is_described = fit.adequacy.verdict == AdequacyVerdict::kAdequate;
-  if (!IsFitted(fit) || is_described || options.response() != loop::Channel::kForce) {
-    return {.considered = {}, .added = {}, .options = options, .fit = std::move(fit)};
+  if (!IsFitted(fit) || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
+      options.response() != loop::Channel::kForce) {
+    return {.options = options, .fit = std::move(fit)};
   }
   return Selection(records, options, fit).Run(std::move(fit), most);
 }
@@ -493,7 +453,8 @@ void IncludeFit(const FitResult& with_term, const Thresholds& thresholds, FitRes
     Include(estimate, {.lower = std::min(other.value, other.lower95.value_or(other.value)),
                        .upper = std::max(other.value, other.upper95.value_or(other.value))});
   }
-  JudgeAgain(thresholds, fit);
+  Append(fit.findings, FindWideIntervals(fit, thresholds));
+  Judge(fit.parameters, fit.findings);
 }
 
 }  // namespace mindahl::identification

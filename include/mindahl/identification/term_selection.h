@@ -28,11 +28,10 @@ enum class MostTerms {
 };
 
 struct TermSelection {
-  std::vector<ConsideredTerm>
-      considered;  ///< those added first, in their order; then by their gain
-  std::vector<std::string> added;
+  std::vector<ConsideredTerm> considered = {};  ///< those added first, in order; then by gain
+  std::vector<std::string> added = {};
   FitOptions options;  ///< with the terms that were added
-  FitResult fit;       ///< with them
+  FitResult fit = {};  ///< with them
 };
 
 /// Fits a record with the terms that it requires (docs/identification.md): none where the law
