@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/draws.h"
@@ -22,14 +21,6 @@ namespace {
 
 constexpr std::array kCycles = {1.0, 1.25, 2.0, 2.5, 3.0, 4.0};
 constexpr std::array<std::size_t, 3> kSamplesPerCycle = {100, 200, 400};
-
-/// Returns the tolerance of a row. Below λ = 1/2 the loop's deviation from a straight line, which
-/// alone distinguishes α from Tc, shrinks as λ² and magnifies rounding errors likewise. With noise
-/// χ² of three degrees of freedom exceeds six squared once in 10⁷.
-double ToleranceOf(double lambda, double noise) {
-  if (noise > 0) return 6.0;
-  return lambda >= 0.5 ? 1e-8 : 1e-6;
-}
 
 struct Case {
   double friction_coefficient = 0.0;
@@ -65,17 +56,12 @@ Record MindlinRecord(const Case& drawn) {
   const double per_cycle = static_cast<double>(drawn.excitation.samples_per_cycle);
   Record record;
   record.time = excitation.time;
-  for (std::size_t i = 0; i < excitation.displacement.size(); ++i) {
-    const double x = excitation.displacement[i];
-    const double phase = static_cast<double>(i) / per_cycle;
-    double force = 0.0;
-    if (phase <= 0.25) {
-      force = contact::MindlinVirginForce(drawn.contact, x);
-    } else {
-      const bool unloading = std::fmod(phase - 0.25, 1.0) < 0.5;
-      force = unloading ? contact::MindlinUnloadingForce(drawn.contact, x, amplitude)
-                        : contact::MindlinReloadingForce(drawn.contact, x, amplitude);
-    }
+  for (const double x : excitation.displacement) {
+    const double phase = static_cast<double>(record.size()) / per_cycle;
+    const bool unloading = std::fmod(phase - 0.25, 1.0) < 0.5;
+    const double force = phase <= 0.25 ? contact::MindlinVirginForce(drawn.contact, x)
+                         : unloading   ? contact::MindlinUnloadingForce(drawn.contact, x, amplitude)
+                                     : contact::MindlinReloadingForce(drawn.contact, x, amplitude);
     record.displacement.push_back(drawn.direction * x);
     record.force.push_back(drawn.direction * force);
   }
@@ -109,10 +95,8 @@ std::string Add(const Record& record, const models::BranchLaw& truth, const FitR
     errors[k] = estimate.name == "alpha" ? std::abs(estimate.value - values[k])
                                          : std::abs(estimate.value / values[k] - 1);
     row.errors[k] = std::max(row.errors[k], errors[k]);
-    if (!estimate.is_known()) {
-      is_undetermined = true;
-      continue;
-    }
+    is_undetermined |= !estimate.is_known();
+    if (!estimate.is_known()) continue;
     ++row.intervals;
     const bool covers = estimate.lower95.value_or(values[k]) <= values[k] &&
                         values[k] <= estimate.upper95.value_or(values[k]);
@@ -138,10 +122,13 @@ std::string Add(const Record& record, const models::BranchLaw& truth, const FitR
 ValidationReport ValidateMapping(const ValidationOptions& options) {
   if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
   ValidationReport report;
+  // Below λ = 1/2 the loop's deviation from a straight line, which alone distinguishes α from Tc,
+  // shrinks as λ² and magnifies rounding errors likewise. With noise χ² of three degrees of freedom
+  // exceeds six squared once in 10⁷.
   for (const double noise : kNoiseLevels) {
     for (const double lambda : kLambdas) {
-      report.rows.push_back(
-          {.lambda = lambda, .noise = noise, .tolerance = ToleranceOf(lambda, noise)});
+      const double tolerance = noise > 0 ? 6.0 : lambda >= 0.5 ? 1e-8 : 1e-6;
+      report.rows.push_back({.lambda = lambda, .noise = noise, .tolerance = tolerance});
     }
   }
   Draws draws(options.seed);
@@ -149,18 +136,18 @@ ValidationReport ValidateMapping(const ValidationOptions& options) {
     const Case drawn = DrawCase(index, draws);
     const Record clean = MindlinRecord(drawn);
     const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
-    const double peak =
-        *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
-    for (std::size_t level = 0; level < kNoiseLevels.size(); ++level) {
+    const auto [least, greatest] = std::ranges::minmax(clean.force);
+    const double peak = std::max(-least, greatest);
+    for (std::size_t place = index % kLambdas.size(); place < report.rows.size();
+         place += kLambdas.size()) {
+      ValidationRow& row = report.rows[place];
       Record noisy = clean;
-      const double noise = kNoiseLevels[level];
-      for (double& force : noisy.force) force += noise * std::abs(peak) * draws.Normal();
-      const std::size_t place = level * kLambdas.size() + index % kLambdas.size();
-      const std::string missed = Add(noisy, truth, Fit({&noisy, 1}), report.rows[place]);
+      for (double& force : noisy.force) force += row.noise * peak * draws.Normal();
+      const std::string missed = Add(noisy, truth, Fit({&noisy, 1}), row);
       if (missed.empty()) continue;
       report.failed_cases.push_back(fmt::format(
           "case {}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}: {}",
-          index, drawn.lambda, noise, drawn.normal_load, drawn.contact.contact_radius,
+          index, drawn.lambda, row.noise, drawn.normal_load, drawn.contact.contact_radius,
           drawn.contact.tangential_compliance, drawn.friction_coefficient, missed));
     }
   }

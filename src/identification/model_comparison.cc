@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "identification/continued_fit.h"
@@ -35,9 +36,8 @@ std::vector<SampleRange> CyclesOf(const FitResult& fit) {
   return cycles;
 }
 
-/// Returns the root mean square error [N] of the prediction of cycles by fits to the others, dealt
-/// in turn to the folds so that slow changes of the contact are in every one; empty where a fit
-/// failed or refused its options. Samples held out still make history.
+/// Returns the rms error [N] of the prediction of cycles by fits to the others, dealt in turn to
+/// the folds so that slow changes of the contact are in every one; empty where a fit failed.
 /// @param options  of these fits; what they hold out stays so
 /// @param counted  fit to all, whose samples that count are predicted
 std::optional<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
@@ -70,11 +70,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
   const auto alpha = options.fixed.find("alpha");
-  struct Compared {
-    FitOptions options;
-    FitResult fit;
-  };
-  std::vector<Compared> compared;
+  std::vector<std::pair<FitOptions, FitResult>> compared;
   for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
@@ -89,13 +85,12 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
       own.model = &model;
       if (rig) own.terms.emplace_back("rig_stiffness");
       FitResult fit = Fitter(own).Fit(records, Depth::kIntervals);
-      if (fit.converged) compared.push_back({std::move(own), std::move(fit)});
+      if (fit.converged) compared.emplace_back(std::move(own), std::move(fit));
     }
   }
   if (compared.empty()) return {};
-  const FitResult& best = std::ranges::min_element(compared, {}, [](const Compared& one) {
-                            return one.fit.likelihood_rms;
-                          })->fit;
+  const FitResult& best =
+      *std::ranges::min_element(compared | std::views::values, {}, &FitResult::likelihood_rms);
   const auto samples = static_cast<double>(best.residuals.samples);
   const Evidence evidence(best.residuals.samples, best.residuals.effective_samples);
   const std::vector<SampleRange> cycles = CyclesOf(best);

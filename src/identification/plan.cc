@@ -13,24 +13,14 @@
 #include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
-#include "identification/solve/search.h"
+#include "identification/solve/solver.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/response.h"
 
 namespace mindahl::identification {
 namespace {
-
-void RequirePlan(const Expectation& expected, const Protocol& protocol) {
-  models::Validate(expected.law);
-  models::Validate(expected.rig);
-  RequirePositive("force noise [N]", expected.force_noise);
-  RequireNonNegative("displacement noise [m]", expected.displacement_noise);
-  RequirePositive("amplitude [m]", protocol.amplitude);
-  if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
-}
 
 /// The loop as it would be measured without noise.
 loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
@@ -38,9 +28,9 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
       models::MakeExcitation({.amplitude = protocol.amplitude,
                               .cycles = protocol.cycles,
                               .samples_per_cycle = protocol.samples_per_cycle});
-  loop::Record record;
-  record.displacement = std::move(excitation.displacement);
-  record.time = std::move(excitation.time);
+  loop::Record record{.displacement = std::move(excitation.displacement),
+                      .force = {},
+                      .time = std::move(excitation.time)};
   const std::vector<std::size_t> reversals = loop::FindReversals(record.displacement, 0.0);
   const models::LoadingPath path =
       models::MakeLoadingPath(record.displacement, reversals, expected.model->memory,
@@ -53,15 +43,14 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
 
 /// Returns the options of a fit of the loop, from the values that are expected.
 FitOptions OptionsOf(const Expectation& expected) {
-  FitOptions options;
-  options.model = expected.model;
-  options.initial_state = models::InitialState::kSteady;
-  options.force_noise = expected.force_noise;
+  FitOptions options{.model = expected.model,
+                     .initial_state = models::InitialState::kSteady,
+                     .force_noise = expected.force_noise,
+                     .start = {{"sigma", expected.law.tangential_stiffness},
+                               {"alpha", expected.law.shape_exponent},
+                               {"slip_force", expected.law.slip_force}}};
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
-  options.start = {{"sigma", expected.law.tangential_stiffness},
-                   {"alpha", expected.law.shape_exponent},
-                   {"slip_force", expected.law.slip_force}};
   if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
   return options;
 }
@@ -69,29 +58,29 @@ FitOptions OptionsOf(const Expectation& expected) {
 }  // namespace
 
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
-  RequirePlan(expected, protocol);
+  models::Validate(expected.rig);
+  RequirePositive("force noise [N]", expected.force_noise);
+  RequireNonNegative("displacement noise [m]", expected.displacement_noise);
+  if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
   const loop::Record record = LoopOf(expected, protocol);
   const FitOptions options = OptionsOf(expected);
   const loop::RecordView view = record;
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
-  Candidate candidate(data, options, models::InitialState::kSteady);
-  const Problem& problem = candidate.problem;
-  Solution& solution = candidate.solution;
-  const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
+  const Problem problem(data, options, models::InitialState::kSteady);
+  Solution solution;
   std::vector<double> theta;
   for (const Parameter& parameter : problem.parameters) theta.push_back(parameter.theta);
   solution.theta = theta;
   Noise noise;
-  FitWithWeights(problem, data, options, drawn.get(), solution, noise);
+  FitWithWeights(problem, data, options, loop::DrawReadings(prepared).get(), solution, noise);
   solution.theta = theta;
   const Estimates estimates(problem, solution, noise, options,
                             LinearizeAt(problem, theta, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
-  for (const double force : record.force) {
-    result.peak_force = std::max(result.peak_force, std::abs(force));
-  }
+  result.peak_force =
+      std::ranges::max(record.force | std::views::transform([](double f) { return std::abs(f); }));
   result.parameters = ValuesOf(problem, solution);
   for (std::size_t k = 0; k < result.parameters.size(); ++k) {
     estimates.Fill(problem.parameters.reported()[k], result.parameters[k]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -35,8 +36,7 @@ struct FindingRow {
   bool holds_without_model = false;        ///< it stays where the model is inadequate
 };
 
-/// Every finding there is. A code without a row does not compile, and neither does a row without a
-/// sentence in `report`.
+/// Every finding. A code without a row, or a row without a sentence in `report`, does not compile.
 inline constexpr auto kFindings = [] {
   using enum Identifiability;
   using enum Severity;
@@ -77,10 +77,8 @@ class FindingCode {
 
  private:
   static constexpr const FindingRow& Find(std::string_view code) {
-    for (const FindingRow& row : kFindings) {
-      if (row.code == code) return row;
-    }
-    throw "kFindings has no row for this code";
+    const auto* const row = std::ranges::find(kFindings, code, &FindingRow::code);
+    return row != kFindings.end() ? *row : throw "kFindings has no row for this code";
   }
 
   const FindingRow* row_;
@@ -97,10 +95,9 @@ struct Finding {
 
   /// Returns a number of the finding; empty when it has none of that name.
   [[nodiscard]] std::optional<double> Number(std::string_view name) const {
-    for (const auto& [key, value] : numbers) {
-      if (key == name) return value;
-    }
-    return std::nullopt;
+    const auto found =
+        std::ranges::find(numbers, name, &std::pair<std::string_view, double>::first);
+    return found == numbers.end() ? std::nullopt : std::optional(found->second);
   }
 };
 
