@@ -4,14 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/text.h"
 #include "mindahl/core/error.h"
@@ -20,23 +16,10 @@
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
-
 namespace {
 
 using identification::FitOptions;
 using identification::FitResult;
-
-constexpr std::array kFlags = {
-    CycleFlag{"not_converged", "the fit failed or did not converge; its values are not to be used"},
-    CycleFlag{"sigma_open", "the cycle does not determine sigma"},
-    CycleFlag{"alpha_open", "the cycle does not determine alpha"},
-    CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
-    CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
-    CycleFlag{"rows_missing",
-              "time jumps by a quarter of a cycle or more: what turned there is not seen"},
-    CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
-    CycleFlag{"glitches", "spikes or dropouts were left out or interpolated"},
-};
 
 FitOptions OfSteadyCycles(FitOptions options) {
   options.preparation.begins_at_turn = true;
@@ -67,7 +50,6 @@ void FillFacts(const loop::Record& record, const loop::LoopFacts& facts, CycleFi
   fit["peak_force"] = facts.peak_force;
   fit["sliding_amplitude"] = facts.sliding_amplitude;
   fit["half_gap"] = facts.half_gap;
-  // The energy is the mean of all cycles of the row; the other facts are those of the widest cycle.
   double energy = 0.0;
   for (const loop::CycleFacts& cycle : facts.cycles) energy += cycle.energy;
   fit["energy"] = energy / static_cast<double>(facts.cycles.size());
@@ -101,22 +83,17 @@ Value CellValue(std::string_view cell) {
   throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
-/// Interpolates glitches in the first and the last two samples of a cycle, where
-/// FindAndInterpolate() looks for none. The halves are exchanged, so that the ends meet in the
-/// middle.
+/// Interpolates glitches in the first and last two samples of a cycle, where FindAndInterpolate()
+/// looks for none: the halves are exchanged, so that the ends meet in the middle.
 /// @returns true if there was one
 bool RepairEnds(loop::Record& cycle) {
   constexpr std::size_t kNearEnd = 2;  // samples
   const std::size_t half = cycle.size() / 2;
-  const auto exchanged = [&](const std::vector<double>& values) {
-    std::vector<double> halves(values.size());
-    std::ranges::rotate_copy(values, values.begin() + static_cast<std::ptrdiff_t>(half),
-                             halves.begin());
-    return halves;
-  };
-  const std::vector<double> displacement = exchanged(cycle.displacement);
-  const std::vector<double> force = exchanged(cycle.force);
-  const loop::Interpolated found = loop::FindAndInterpolate({displacement, force});
+  loop::Record exchanged{.displacement = cycle.displacement, .force = cycle.force};
+  for (auto* const values : {&exchanged.displacement, &exchanged.force}) {
+    std::ranges::rotate(*values, values->begin() + static_cast<std::ptrdiff_t>(half));
+  }
+  const loop::Interpolated found = loop::FindAndInterpolate(exchanged);
   const std::size_t seam = cycle.size() - half;
   bool is_repaired = false;
   for (const std::size_t i : found.glitches) {
@@ -130,8 +107,6 @@ bool RepairEnds(loop::Record& cycle) {
 }
 
 }  // namespace
-
-std::span<const CycleFlag> CycleFlags() { return kFlags; }
 
 void RequireFit(const loop::RecordView& head, const FitOptions& options) {
   const auto [least, greatest] = std::ranges::minmax(head.force);
@@ -226,8 +201,8 @@ CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
     const std::string_view cell = cells[kCounts + k];
     if (!cell.empty()) fit.numbers.at(k) = CellValue<double>(cell);
   }
-  if (const std::string_view flags = cells[columns - 1]; !flags.empty()) {
-    for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
+  for (const std::string_view flag : PartsOf(cells.back(), ' ')) {
+    if (!flag.empty()) fit.flags.emplace_back(flag);
   }
   return fit;
 }

@@ -10,7 +10,6 @@
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::campaign {
-
 namespace {
 
 void Append(const loop::RecordView& samples, std::span<const std::size_t> lines, io::Samples& to) {
@@ -35,7 +34,11 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
                         std::vector<Cycle>& cycles) {
   Append(samples, lines, kept_);
   for (const double displacement : samples.displacement) {
-    if (const std::optional<std::size_t> turn = finder_.Add(displacement)) Turn(*turn, cycles);
+    const std::optional<std::size_t> turn = finder_.Add(displacement);
+    if (!turn) continue;
+    if (turns_ == 0) begin_ = *turn - dropped_;
+    if (turns_ % 2 == 0) end_ = *turn - dropped_;
+    if (turns_++ == 2 * together_) TakeOff(cycles);
   }
   const auto end = static_cast<std::ptrdiff_t>(begin_);
   const auto erase_before = [end](auto& values) {
@@ -53,14 +56,6 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   }
 }
 
-void CycleSplitter::Turn(std::size_t turning_point, std::vector<Cycle>& cycles) {
-  const std::size_t turn = turning_point - dropped_;
-  if (turns_ == 0) begin_ = turn;
-  if (turns_ % 2 == 0) end_ = turn;
-  if (turns_++ == 2 * together_) TakeOff(cycles);
-}
-
-/// Appends the whole cycles of the piece.
 void CycleSplitter::TakeOff(std::vector<Cycle>& cycles) {
   const std::size_t count = (turns_ - 1) / 2;
   Cycle& cycle = cycles.emplace_back(Cycle{
@@ -79,12 +74,9 @@ void CycleSplitter::TakeOff(std::vector<Cycle>& cycles) {
 std::size_t CycleSplitter::Restart(std::vector<Cycle>& cycles) {
   if (turns_ >= 3) TakeOff(cycles);
   const std::size_t left = kept_.size() - begin_;
-  kept_ = {};
-  finder_ = loop::ReversalFinder(gate_);
-  dropped_ = 0;
-  begin_ = 0;
-  end_ = 0;
-  turns_ = 0;
+  const std::size_t cycles_so_far = cycles_;
+  *this = CycleSplitter(gate_, together_);
+  cycles_ = cycles_so_far;
   return left;
 }
 
@@ -106,10 +98,9 @@ io::Samples ReadHead(io::RecordStream& stream) {
 
 loop::ReversalGate ChooseGate(const loop::RecordView& head, identification::FitOptions& fit) {
   const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation);
-  loop::ReversalGate gate = prepared.records.front().gate;
-  fit.preparation.reversal_gate = gate.gate;
+  fit.preparation.reversal_gate = prepared.records.front().gate.gate;
   fit.preparation.force_sense = prepared.force_sense;
-  return gate;
+  return prepared.records.front().gate;
 }
 
 }  // namespace mindahl::campaign

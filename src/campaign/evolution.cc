@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <optional>
+#include <ranges>
 #include <utility>
 
 #include "core/probability.h"
@@ -14,7 +15,6 @@
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
-
 namespace {
 
 constexpr double kChance = 0.01;         // of a change, or of a trend, where there is none
@@ -22,8 +22,7 @@ constexpr double kSmallestStep = 0.02;   // [-] of the value before it
 constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
 constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
 constexpr double kSettled = 0.05;        // [-] of the whole change
-// A variance of residuals above so many times that of neighbours, and above this fraction of that
-// of all values, is no scatter.
+// A variance of residuals above so many times the neighbours', and this of all, is no scatter.
 constexpr double kOfNeighbours = 10;
 constexpr double kOfAll = 0.25;
 constexpr std::size_t kLeastBins = 4;      // of a segment: two beyond a line
@@ -83,18 +82,14 @@ std::vector<double> SquaredBends(Bins bins) {
   return squares;
 }
 
-/// Returns the variance of a value that squared bends show.
-double VarianceOf(std::vector<double> squares) {
-  constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
-  return loop::Median(squares) / kMedianOfChiSquared;
-}
+/// Returns the variance of a value that squared bends show, over the median of χ² with one degree.
+double VarianceOf(std::vector<double> squares) { return loop::Median(squares) / 0.455; }
 
 /// Returns the least variance of a value, in as many as a bin counts.
 double FloorOf(const Course::Bin& bin) { return bin.count * std::pow(kExact * bin.value, 2); }
 
 /// Returns the bins, each counting as many values of the usual scatter as determine its mean so
-/// well: by its standard errors and the scatter beyond these, and by the scatter of neighbours
-/// within a window to either side of it, the larger of the two.
+/// well: by its standard errors and the scatter beyond, and by that of neighbours, the larger one.
 std::vector<Course::Bin> Weighted(Bins bins) {
   std::vector<Course::Bin> weighted(bins.begin(), bins.end());
   std::vector<double> errors;
@@ -151,8 +146,7 @@ struct Segment {
   [[nodiscard]] double last() const { return At(bins.back()); }
 };
 
-/// Estimates it within segments, from means of neighbouring blocks of up to eight bins, in which
-/// correlated ones count.
+/// Estimates it within segments, from neighbouring blocks of bins, in which correlated ones count.
 /// @param bins  all of them, with their outliers
 Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t longest = 8) {
   constexpr std::size_t kBlocks = 16;
@@ -160,26 +154,24 @@ Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t long
   std::vector<double> squares;
   double exact = 0.0;
   for (const Segment& segment : segments) {
+    const Bins own =
+        bins.subspan(segment.bins.data() - segments.front().bins.data(), segment.bins.size());
     std::vector<Course::Bin> blocks;
-    const Course::Bin* bin = &bins[segment.bins.data() - segments.front().bins.data()];
-    for (std::size_t i = 0; i < segment.bins.size(); ++i, ++bin) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
       if (i % length == 0) {
-        blocks.push_back(*bin);
+        blocks.push_back(own[i]);
       } else {
-        blocks.back().Merge(*bin);
+        blocks.back().Merge(own[i]);
       }
-      exact = std::max(exact, FloorOf(*bin));
+      exact = std::max(exact, FloorOf(own[i]));
     }
-    const std::vector<double> own = SquaredBends(blocks);
-    squares.insert(squares.end(), own.begin(), own.end());
+    std::ranges::copy(SquaredBends(blocks), std::back_inserter(squares));
   }
   if (squares.empty()) return {std::numeric_limits<double>::infinity(), 1.0};
   return {std::max(VarianceOf(squares), exact), static_cast<double>(squares.size()) / 2};
 }
 
-/// Finds the segments of bins whose lines have the least sum of squares, for each number of
-/// segments. The bin between two is in the line of neither, as what changes within a cycle makes it
-/// a mixture of both.
+/// Finds the segments of bins whose lines have the least sum of squares, for each number of them.
 class Divisions {
  public:
   explicit Divisions(Bins bins) : bins_(bins) {
@@ -237,8 +229,7 @@ class Divisions {
   std::array<std::vector<Best>, kMostSegments> best_;
 };
 
-/// Returns the bins, each with the median of it and its neighbours, of an end the next two: one
-/// alone that is off is none.
+/// Returns the bins, each within the range of its neighbours, of an end that of the next two.
 std::vector<Course::Bin> WithoutOutliers(Bins bins) {
   std::vector<Course::Bin> kept(bins.begin(), bins.end());
   for (std::size_t i = 0; i < bins.size(); ++i) {
@@ -260,21 +251,17 @@ std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
   const std::size_t first = segments.front().begin;
   const std::size_t last = segments.back().bins.back().last_cycle;
   std::size_t settled = last + 1;
-  for (auto each = segments.rbegin(); each != segments.rend(); ++each) {
-    while (settled > each->begin) {
-      const double value = each->line.At(static_cast<double>(settled - 1));
-      if (!(std::abs(value - end) <= kSettled * change)) break;
-      --settled;
-    }
-    if (settled > each->begin) break;
+  for (auto each = segments.rbegin(); settled > first; --settled) {
+    while (each->begin >= settled) ++each;
+    const double value = each->line.At(static_cast<double>(settled - 1));
+    if (!(std::abs(value - end) <= kSettled * change)) break;
   }
   if (settled == first || 10 * (last - std::min(settled, last)) < last - first) return std::nullopt;
   return settled;
 }
 
-/// Returns the step from one segment to the next where there is one: a jump at
-/// the bin between, by more than slopes make of it within the shortest segment,
-/// and beyond chance at one of so many places.
+/// Returns the step from one segment to the next, if any: a jump at the bin between, by more than
+/// slopes make of it within the shortest segment, beyond chance at one of so many places.
 std::optional<Change> StepBetween(const Segment& before, const Segment& after, const Noise& noise,
                                   std::size_t places) {
   const Course::Bin& between = *(after.bins.data() - 1);
@@ -309,14 +296,7 @@ constexpr std::array kQuantities = {
     TrackedQuantity{"energy_ratio", "", ""},
 };
 
-/// Returns "p = 0.01"; no p-value is 0.
-std::string ChanceText(double p_value) {
-  constexpr double kLeast = 1e-12;
-  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.1g}", p_value);
-}
-
-/// Returns "+60 %"; nothing where the sign changes or it grows more than
-/// tenfold.
+/// Returns "+60 %"; nothing where the sign changes or it grows more than tenfold.
 std::string RelativeChange(double from, double to) {
   constexpr double kMost = 10;
   const double change = to / from - 1;
@@ -324,28 +304,22 @@ std::string RelativeChange(double from, double to) {
   return fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 0.1 ? 1 : 0);
 }
 
-/// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same three digits.
-std::string FromTo(double from, double to, const std::string& unit) {
+/// Returns "0.352 → 0.600" or "250 → 400 µm"; one value where both have the same digits: three, or
+/// as many as show a smaller error.
+std::string FromTo(double from, double to, const std::string& unit,
+                   const std::string& between = " → ",
+                   double error = std::numeric_limits<double>::infinity()) {
   const double largest = std::max(std::abs(from), std::abs(to));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
   const auto text = [&](double value) {
-    return report::RoundedTo(largest / 10 / scaled.factor, value / scaled.factor);
+    return report::RoundedTo(std::min(largest / 10, error) / scaled.factor, value / scaled.factor);
   };
-  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : " → " + text(to)));
+  return scaled.Behind(text(from) + (text(to) == text(from) ? "" : between + text(to)));
 }
 
-/// Returns "10.5 to 19.5 N", with as many digits as tell the ends apart.
-std::string Range(double least, double greatest, const std::string& unit) {
-  const double largest = std::max(std::abs(least), std::abs(greatest));
-  const report::ScaledUnit scaled = report::UnitFor(unit, largest);
-  const double error = std::min(largest / 10, greatest - least) / scaled.factor;
-  return scaled.Behind(report::RoundedTo(error, least / scaled.factor) + " to " +
-                       report::RoundedTo(error, greatest / scaled.factor));
-}
-
-/// Returns the size of a change over the larger of its ends.
-double RelativeSize(double from, double to) {
-  return std::abs(to - from) / std::max(std::abs(from), std::abs(to));
+/// Returns "varies from 10.5 to 19.5 N", with as many digits as tell the ends apart.
+std::string Variation(double least, double greatest, const std::string& unit) {
+  return "varies from " + FromTo(least, greatest, unit, " to ", greatest - least);
 }
 
 }  // namespace
@@ -417,17 +391,17 @@ CourseDescription Describe(const Course& course) {
       segment.begin = step->first_cycle;
     }
     if (before != nullptr && !step && before->line.slope() * line.slope() > 0) {
-      changes.back().last_cycle = segment.bins.back().last_cycle;
-      changes.back().to = segment.last();
-      changes.back().p_value = std::min(changes.back().p_value, p_value);
+      Change& trend = changes.back();
+      trend = {trend.first_cycle, segment.bins.back().last_cycle, trend.from, segment.last(),
+               std::min(trend.p_value, p_value)};
     } else if (line.slope() != 0) {
       changes.push_back({segment.begin, segment.bins.back().last_cycle, segment.first(),
                          segment.last(), p_value});
     }
     before = &segment;
   }
-  const auto values = static_cast<double>(rows);
-  description.varies = rows >= kFewestToTest && squares > kOfNeighbours * neighbours * values &&
+  description.varies = rows >= kFewestToTest &&
+                       squares > kOfNeighbours * neighbours * static_cast<double>(rows) &&
                        squares > kOfAll * LineThrough(bins).square;
   if (description.varies) {
     changes.clear();
@@ -453,8 +427,7 @@ CourseDescription Describe(const Course& course) {
 std::vector<Evolution> BeginEvolutions(bool is_torsional) {
   std::vector<Evolution> evolutions;
   for (const TrackedQuantity& quantity : kQuantities) {
-    const std::string_view own = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
-    const std::string_view unit = own.empty() ? "-" : own;
+    const std::string_view unit = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
     evolutions.push_back(
         {&quantity, is_torsional ? report::UnitOfTorque(unit) : std::string(unit)});
   }
@@ -462,20 +435,17 @@ std::vector<Evolution> BeginEvolutions(bool is_torsional) {
 }
 
 void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
+  if (fit.HasFlag("not_converged") || fit.HasFlag("rows_missing")) return;
   for (Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
+    const std::string parameter(quantity.parameter);
     const std::optional<double>& value = fit[quantity.name];
-    if (!value || !std::isfinite(*value) ||
-        fit.HasFlag(std::string(quantity.parameter) + "_open") || fit.HasFlag("not_converged") ||
-        fit.HasFlag("rows_missing")) {
-      continue;
-    }
+    if (!value || !std::isfinite(*value) || fit.HasFlag(parameter + "_open")) continue;
     ++evolution.known;
     // A quotient of a parameter has the parameter's relative error.
     double error = 0.0;
-    if (!quantity.parameter.empty() && fit[quantity.parameter]) {
-      error = fit[std::string(quantity.parameter) + "_error"].value_or(0.0);
-      error *= std::abs(*value / *fit[quantity.parameter]);
+    if (!parameter.empty() && fit[parameter]) {
+      error = fit[parameter + "_error"].value_or(0.0) * std::abs(*value / *fit[parameter]);
     }
     evolution.course.Add(fit.number, *value, fit.cycles, std::isfinite(error) ? error : 0.0);
   }
@@ -510,10 +480,10 @@ std::string Headline(std::span<const Evolution> evolutions) {
     if (is_force && std::exchange(has_force, true)) continue;
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     if (course.varies) {
-      text += "varies from " + Range(course.from, course.to, evolution.unit);
+      text += Variation(course.from, course.to, evolution.unit);
     } else if (course.changed()) {
-      const bool in_percent = quantity.name == "sigma";
-      const std::string change = in_percent ? RelativeChange(course.from, course.to) : "";
+      std::string change;
+      if (quantity.name == "sigma") change = RelativeChange(course.from, course.to);
       text += change.empty() ? FromTo(course.from, course.to, evolution.unit) : change;
     } else if (evolution.course.bins().size() >= kFewestToTest) {
       text += FromTo(course.from, course.from, evolution.unit) + " throughout, but for scatter";
@@ -527,24 +497,28 @@ std::string Headline(std::span<const Evolution> evolutions) {
 
 std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions) {
   constexpr std::size_t kMost = 10;
-  std::vector<std::pair<double, std::string>> statements;  // with the relative sizes
+  constexpr double kLeastChance = 1e-12;                   // no p-value is 0
+  std::vector<std::pair<double, std::string>> statements;  // with sizes over the larger end
+  const auto add = [&statements](double from, double to, std::string statement) {
+    const double size = std::abs(to - from) / std::max(std::abs(from), std::abs(to));
+    statements.emplace_back(size, std::move(statement));
+  };
   for (const Evolution& evolution : evolutions) {
     if (const CourseDescription& course = evolution.description; course.varies) {
-      statements.emplace_back(
-          RelativeSize(course.from, course.to),
-          fmt::format("{}: varies from {}, with no lasting step or trend", evolution.quantity->name,
-                      Range(course.from, course.to, evolution.unit)));
+      add(course.from, course.to,
+          fmt::format("{}: {}, with no lasting step or trend", evolution.quantity->name,
+                      Variation(course.from, course.to, evolution.unit)));
     }
     for (const auto& change : evolution.description.changes) {
       const auto& [first, last, from, to, p_value] = change;
       const std::string relative = RelativeChange(from, to);
-      statements.emplace_back(
-          RelativeSize(from, to),
+      add(from, to,
           fmt::format("{}: {}, {}{}, {}", evolution.quantity->name,
                       change.is_step() ? fmt::format("a step at cycle {}", first)
                                        : fmt::format("cycles {} to {}", first, last),
                       FromTo(from, to, evolution.unit),
-                      relative.empty() ? "" : " (" + relative + ")", ChanceText(p_value)));
+                      relative.empty() ? "" : " (" + relative + ")",
+                      p_value < kLeastChance ? "p < 1e-12" : fmt::format("p = {:.1g}", p_value)));
     }
   }
   std::ranges::stable_sort(statements, std::greater<>(), &std::pair<double, std::string>::first);
@@ -553,9 +527,8 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions)
     statements.resize(kMost);
     statements.back().second = fmt::format("and {} smaller ones, which --json lists", more);
   }
-  std::vector<std::string> lines;
-  for (auto& [size, statement] : statements) lines.push_back(std::move(statement));
-  return lines;
+  const auto texts = statements | std::views::values;
+  return {texts.begin(), texts.end()};
 }
 
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
@@ -579,15 +552,14 @@ std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions
     for (std::size_t k = bins.size(); k-- > 0;) range.y.push_back(bins[k].least);
     panel.series = {std::move(range), std::move(course)};
     report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
-    for (const Change& step : evolution.description.changes) {
-      if (!step.is_step()) continue;
-      panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
-                             .label = fmt::format("step, {}", step.first_cycle)});
-    }
-    if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
+    const auto mark = [&panel](std::string_view what, std::size_t cycle) {
       panel.marks.push_back(
-          {.x = static_cast<double>(*settled), .label = fmt::format("settled, {}", *settled)});
+          {.x = static_cast<double>(cycle), .label = fmt::format("{}, {}", what, cycle)});
+    };
+    for (const Change& change : evolution.description.changes) {
+      if (change.is_step()) mark("step", change.first_cycle);
     }
+    if (const auto settled = evolution.description.settled_at) mark("settled", *settled);
   }
   return panels;
 }
@@ -595,12 +567,11 @@ std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions
 io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
   io::PlotPanel panel;
   for (const Cycle& cycle : cycles) {
-    io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number),
-                        .x = cycle.record.displacement,
-                        .y = cycle.record.force};
-    loop.shade = static_cast<double>(panel.series.size()) /
-                 static_cast<double>(std::max<std::size_t>(cycles.size() - 1, 1));
-    panel.series.push_back(std::move(loop));
+    panel.series.push_back({.label = fmt::format("cycle {}", cycle.number),
+                            .x = cycle.record.displacement,
+                            .y = cycle.record.force,
+                            .shade = static_cast<double>(panel.series.size()) /
+                                     std::max(static_cast<double>(cycles.size()) - 1, 1.0)});
   }
   const report::Units& units = report::UnitsOf(is_torsional);
   report::ScaleAxes(panel, is_torsional ? "angle" : "displacement", units.displacement,

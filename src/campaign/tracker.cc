@@ -28,7 +28,6 @@ std::size_t Tracker::NextFile() {
   return left;
 }
 
-/// Begins to fit cycles that were split off.
 void Tracker::Take(std::vector<Cycle>& cycles) {
   for (Cycle& cycle : cycles) {
     Log(cycle);
@@ -60,8 +59,7 @@ void Tracker::Finish() {
 
 void Tracker::Begin() {
   while (begun_.size() >= options_.threads) Deliver();
-  // std::async defers the fit if no thread can be started, but has then moved from its argument:
-  // the function is therefore copied.
+  // If no thread starts std::async defers, but has then moved from its argument: fit is copied.
   const auto cycles = std::make_shared<const std::vector<Cycle>>(std::exchange(batch_, {}));
   const auto fit = [this, cycles] {
     CycleFitter fitter(options_.fit, options_.compliance);

@@ -125,7 +125,7 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
 /// Returns the flags that a cycle has, with what they say.
 Json FlagRows(const TrackedTest& test) {
   Json rows = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+  for (const campaign::CycleFlag& flag : campaign::kCycleFlags) {
     const auto found = test.flags.find(flag.name);
     if (found == test.flags.end()) continue;
     rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};

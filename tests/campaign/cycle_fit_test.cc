@@ -268,8 +268,8 @@ TEST(CycleFitter, FitsCyclesTogetherWithSmallerErrors) {
 }
 
 TEST(CycleFitter, NamesEachFlagOnce) {
-  for (const CycleFlag& flag : CycleFlags()) {
-    EXPECT_EQ(std::ranges::count(CycleFlags(), flag.name, &CycleFlag::name), 1) << flag.name;
+  for (const CycleFlag& flag : kCycleFlags) {
+    EXPECT_EQ(std::ranges::count(kCycleFlags, flag.name, &CycleFlag::name), 1) << flag.name;
     EXPECT_FALSE(flag.meaning.empty());
   }
 }

@@ -65,7 +65,7 @@ Json CausesTable() {
 
 Json FlagsTable() {
   Json rows = Json::array();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+  for (const campaign::CycleFlag& flag : campaign::kCycleFlags) {
     rows.push_back({{"name", flag.name}, {"meaning", flag.meaning}});
   }
   return rows;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +16,7 @@ namespace mindahl::campaign {
 /// A column of numbers of the table of cycles.
 struct CycleNumber {
   std::string_view name;
-  std::string_view unit;  ///< in a record of forces; "" for a pure number
+  std::string_view unit = "-";  ///< in a record of forces
 };
 
 /// All of them, in the order of the table.
@@ -29,21 +28,21 @@ inline constexpr auto kCycleNumbers = std::to_array<CycleNumber>({
     {"sliding_amplitude", "m"},
     {"half_gap", "N"},
     {"energy", "J"},  // a cycle
-    {"energy_ratio", ""},
-    {"energy_friction_coefficient", ""},
+    {"energy_ratio"},
+    {"energy_friction_coefficient"},
     {"normal_load", "N"},  // mean, given or of the column
     // The fit, with standard errors; empty where it failed.
     {"sigma", "N/m"},
     {"sigma_error", "N/m"},
-    {"alpha", ""},
-    {"alpha_error", ""},
+    {"alpha"},
+    {"alpha_error"},
     {"slip_force", "N"},
     {"slip_force_error", "N"},
     {"force_offset", "N"},
     {"force_offset_error", "N"},
     {"rms", "N"},
-    {"friction_coefficient", ""},  // Tc/N, where the load is known and Tc identifiable
-    {"contact_radius", "m"},       // σG*/8, where the compliance is known; never of a torque
+    {"friction_coefficient"},  // Tc/N, where the load is known and Tc identifiable
+    {"contact_radius", "m"},   // σG*/8, where the compliance is known; never of a torque
 });
 
 /// Returns the place of a column among them; their number for a name that no column has.
@@ -53,8 +52,7 @@ inline std::size_t PlaceOf(std::string_view column) {
 }
 
 /// Holds the results of one cycle, or of several fitted together, in the units of loop::LoopFacts
-/// and identification::FitResult; the energy is the mean of the cycles fitted together, and the
-/// other facts are those of the widest of them.
+/// and FitResult; the energy is the mean of these, the other facts are those of the widest.
 struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
@@ -62,7 +60,7 @@ struct CycleFit {
   std::size_t cycles = 1;
   /// Numbers of the table's columns, each empty where it is not known.
   std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
-  /// Holds the warnings about this cycle, each one of CycleFlags().
+  /// Holds the warnings about this cycle, each one of kCycleFlags.
   std::vector<std::string> flags{};
 
   /// Return the number of a column: fit["sigma"].
@@ -83,17 +81,25 @@ struct CycleFlag {
   std::string_view meaning;
 };
 
-/// Returns every flag that a cycle may have: not_converged, sigma_open, …
-std::span<const CycleFlag> CycleFlags();
+/// Every flag that a cycle may have.
+inline constexpr auto kCycleFlags = std::to_array<CycleFlag>({
+    {"not_converged", "the fit failed or did not converge; its values are not to be used"},
+    {"sigma_open", "the cycle does not determine sigma"},
+    {"alpha_open", "the cycle does not determine alpha"},
+    {"slip_force_open", "the cycle does not determine Tc"},
+    {"not_closed", "the cycle does not end where it began, to 5 % of its width"},
+    {"rows_missing", "time jumps by a quarter of a cycle or more: what turned there is not seen"},
+    {"no_loop", "the cycle is no loop: it dissipates nothing"},
+    {"glitches", "spikes or dropouts were left out or interpolated"},
+});
 
 /// Refuses options that no fit of the record takes: a cycle that cannot be fitted is flagged only.
 /// @param head  its first cycles; of one without a force nothing is said
 /// @throws InvalidArgument as Fitter::Fit()
 void RequireFit(const loop::RecordView& head, const identification::FitOptions& options);
 
-/// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at
-/// Depth::kErrors, so that each has the minimum that a fit of it alone has, to the solver's
-/// tolerance, and the standard errors of its noise.
+/// Fits one cycle after the other, each from where the last one ended (Fitter::Continue() at
+/// Depth::kErrors): each has the minimum and the errors that a fit of it alone has.
 class CycleFitter {
  public:
   /// @param options  of each cycle: steady unless another state is given; with the splitting gate

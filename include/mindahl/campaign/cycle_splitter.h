@@ -9,12 +9,10 @@
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
+/// Records of many cycles, each fitted on its own when it is complete.
 namespace mindahl::campaign {
 
-/// Records of many cycles, each fitted on its own when it is complete.
-
-/// One cycle of a longer record, or several in a row: from a turning point to the next but one,
-/// both samples included.
+/// One cycle or several in a row, from a turning point to the next but one, with both samples.
 struct Cycle {
   std::size_t number = 1;      ///< number of the first of them, counted from 1
   std::size_t cycles = 1;      ///< how many they are
@@ -22,9 +20,8 @@ struct Cycle {
   loop::Record record;
 };
 
-/// Cuts samples that arrive piece by piece into cycles. A cycle begins at the first turning point
-/// and at every second one after it; what comes before the first and after the last is none.
-/// Memory: the samples since the cycle's first.
+/// Cuts samples that arrive piece by piece into cycles, from the first turning point to every
+/// second one after it; what lies outside is none. Memory: the samples since the cycle's first.
 class CycleSplitter {
  public:
   /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it
@@ -51,7 +48,7 @@ class CycleSplitter {
   static constexpr std::size_t kMostSamples = 20'000'000;
 
  private:
-  void Turn(std::size_t turning_point, std::vector<Cycle>& cycles);
+  /// Appends the whole cycles of the piece.
   void TakeOff(std::vector<Cycle>& cycles);
 
   double gate_;
@@ -65,8 +62,7 @@ class CycleSplitter {
   std::size_t cycles_ = 0;
 };
 
-/// Reads the first samples, as many as determine how the record is read: some cycles, or the
-/// first million.
+/// Reads the samples that determine how the record is read: some cycles, or the first million.
 io::Samples ReadHead(io::RecordStream& stream);
 
 /// Chooses the reversal gate and the force's sign, one for all cycles, from the head of a record.

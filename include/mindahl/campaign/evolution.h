@@ -50,33 +50,29 @@ class Course {
   double last_ = 0.0;
 };
 
-/// A change of a quantity: a trend along straight segments of its time history that go the same
-/// way, 1 % or more each, or a step from one to the next, 2 % or more; or less, if it is four
-/// times the scatter of the values.
+/// A change of a quantity: a trend along straight segments in a row that go the same way, of 1 % or
+/// more each, or a step between two, of 2 % or more; or of four times the scatter.
 struct Change {
   std::size_t first_cycle = 0;  ///< a step has the first cycle after it in both
   std::size_t last_cycle = 0;
   double from = 0.0;
   double to = 0.0;
-  /// Probability of such a slope under the hypothesis of none; or of such a step under no change,
-  /// corrected for the choice of the place.
+  /// Probability of such a slope or step without a change; a step's is corrected for its place.
   double p_value = 1.0;
 
   [[nodiscard]] bool is_step() const { return first_cycle == last_cycle; }
 };
 
 struct CourseDescription {
-  /// The first and the last value; the value of the segment's line in its place if it lies within
-  /// the scatter. Without a change both are the weighted mean, if it varies the least and the
-  /// greatest value.
+  /// The first and the last value, on the segment's line if it lies within the scatter. Without a
+  /// change both are the weighted mean, if it varies the least and the greatest value.
   double from = 0.0;
   double to = 0.0;
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
   /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
   std::vector<Change> changes = {};  ///< in their order
-  /// True if the residuals about the segments are large, and alike in neighbouring bins, as of a
-  /// periodic time history.
+  /// True if residuals about the segments are large and alike in neighbouring bins: periodic.
   bool varies = false;
 
   [[nodiscard]] bool changed() const { return !changes.empty(); }
@@ -84,13 +80,12 @@ struct CourseDescription {
 
 /// Divides a time history into at most eight straight segments with the least sum of squares; F
 /// tests, with a chance below 1 %, corrected for the number of places, choose how many. The bin
-/// between two is in neither line: it may hold the values of both. Bins weigh by their standard
-/// errors, the scatter beyond these, and that of their neighbours. The noise that this is judged by
-/// is that of neighbouring values, whatever the lines miss, but no less than 0.1 % of the values.
-/// Steps are between segments, trends along one by Student's test of its slope. No value is stated
-/// that no cycle had. Where the residuals have more than a quarter of the variance, and ten times
-/// what neighbours differ by, it varies, without changes.
-/// Cost: with the square of the number of bins, and with the number of cycles.
+/// between two may hold the values of both, and is in neither line. Bins weigh by their standard
+/// errors, the scatter beyond these, and that of their neighbours. The noise is that of neighbours,
+/// whatever the lines miss, but no less than 0.1 % of the values. Steps are between segments,
+/// trends along one by Student's test of its slope; no value is stated that no cycle had. It
+/// varies, without changes, where residuals have a quarter of the variance and ten times that of
+/// neighbours. Cost: with the square of the number of bins, and with the number of cycles.
 CourseDescription Describe(const Course& course);
 
 /// Describes a quantity whose time history is reported.
@@ -116,8 +111,7 @@ struct Evolution {
 /// Returns the evolutions of all of them before the first cycle.
 std::vector<Evolution> BeginEvolutions(bool is_torsional);
 
-/// Adds a cycle to the time histories, in memory that their number does not change; none of one
-/// that did not converge, nor of a quantity that it leaves open.
+/// Adds a cycle to the time histories, if it converged, of quantities that it does not leave open.
 void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 
 /// Describes those that have a value, those of the whole test first, and removes the others; no
@@ -125,17 +119,15 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 void Describe(std::vector<Evolution>& evolutions);
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
-/// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
-/// open or not of the whole test, then stiffness and contact radius.
+/// µm"; of μ, Tc and half gap the first of the whole test, then σ and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, the largest first; of more
 /// than ten nine, and how many more there are.
 std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions);
 
-/// Returns a panel for each quantity that has two bins or more, over the number of the cycle,
-/// logarithmic where there are a hundred or more: a line within the least and the greatest of the
-/// cycles that a point stands for, and the steps as marks.
+/// Returns a panel for each quantity with two bins or more, over the cycle, logarithmic from a
+/// hundred on: a line within the range of the cycles that a point stands for, steps as marks.
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions);
 
 /// Returns loops over each other, each named by its cycle.
