@@ -49,8 +49,7 @@ enum class AdequacyVerdict {
   kInadequate,  ///< parameters of this model mean nothing for this record
 };
 
-/// Grades the use of the fitted parameters by the force that the model misses over the half gap
-/// measured without a model.
+/// Grades the use of the parameters: the force that the model misses over the measured half gap.
 enum class Use {
   kQuantitative,  ///< no more than 5 % of it
   kIndicative,    ///< no more than 15 % of it
@@ -68,8 +67,7 @@ struct Cause {
 /// Holds whether, and why not, the model describes the records: docs/identification.md.
 struct Adequacy {
   AdequacyVerdict verdict = AdequacyVerdict::kAdequate;
-  /// rms of the residuals that the causes explain or that repeat in every stroke, over that of the
-  /// noise
+  /// rms of the residuals that causes explain or that repeat in every stroke, over the noise's
   double misfit_over_noise = 0.0;
   double misfit = 0.0;        ///< rms of what the model misses [N or m]
   double p_value = 1.0;       ///< probability of such residuals from noise alone

@@ -32,8 +32,7 @@ struct [[gnu::visibility("default")]] CeresParameter {
   [[nodiscard]] double ThetaAt(double value) const;
 };
 
-/// The least-squares problem of a fit, unprojected, as ceres::CostFunctions with analytic
-/// Jacobians:
+/// The least-squares problem of a fit, unprojected: ceres::CostFunctions with analytic Jacobians
 ///   rᵢ = √wᵢ·(T_model(δᵢ; σ, α, Tc, rig, offsets, terms) − Tᵢ)/residual_unit
 /// over all parameters of the fit, one residual block of all records. To it residuals and priors of
 /// one's own are added, and ceres::Solve is called:

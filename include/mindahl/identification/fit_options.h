@@ -29,8 +29,7 @@ struct FitOptions {
   /// One of FrictionModels().
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
-  /// State of the contacts before the first samples. Empty: both are fitted, and the smaller AICc
-  /// on effective samples is kept.
+  /// State of the contacts before the first samples. Empty: both are fitted, the smaller AICc kept.
   std::optional<models::InitialState> initial_state{};
 
   /// How the records are read, and which samples count.
@@ -39,8 +38,7 @@ struct FitOptions {
   /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
   bool offsets = true;
 
-  /// Terms that are fitted in addition, by name: rig_stiffness, plateau_slope, force_drift …
-  /// Fixing one gives it a known value.
+  /// Terms that are fitted in addition, by name: plateau_slope … Fixing one gives it a known value.
   std::vector<std::string> terms{};
 
   /// Columns of the records, by the names of their covariates, in proportion to which a force is
@@ -54,9 +52,8 @@ struct FitOptions {
   /// mean of the records' loads.
   std::vector<double> normal_loads{};
 
-  /// Known standard deviation of the force noise [N] of all records; empty: from the residuals,
-  /// of each record by itself where they differ in it. Not of a force that is imposed, which is
-  /// taken as exact.
+  /// Known standard deviation of the force noise [N] of all records; empty: from the residuals, of
+  /// each record where they differ in it. A force that is imposed is taken as exact and has none.
   std::optional<double> force_noise{};
 
   /// Fraction of such intervals, in (0, 1), that contain the true value.
@@ -72,8 +69,7 @@ struct FitOptions {
   std::map<std::string, double> start{};     ///< replaces the starting value found from the data
   std::map<std::string, Interval> bounds{};  ///< replaces the default bounds
 
-  /// Steps of a search, or three times as many where it ends at a bound: one that makes them all
-  /// has not converged.
+  /// Steps of a search, or three times as many where it ends at a bound; after these it has failed.
   int max_iterations = 500;
 
   Thresholds thresholds{};

@@ -43,9 +43,8 @@ struct ValidationReport {
 };
 
 /// Draws contacts with N in 1e-6 … 1e5 N, a in 1e-8 … 3e-2 m, G* in 1e-12 … 1e-8 1/Pa (all
-/// log-uniform), μ in 0.05 … 1.2, one to four cycles, both starting directions, sine and triangle;
-/// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
-/// fits them with free α and compares.
+/// log-uniform), μ in 0.05 … 1.2, one to four cycles, both directions, sine and triangle; fits
+/// their loops by the closed Mindlin equations (contact module) with free α and compares.
 /// @throws InvalidArgument where there is no case
 ValidationReport ValidateMapping(const ValidationOptions& options);
 

@@ -48,9 +48,8 @@ struct ExpectedFit {
 /// unbiased estimates cannot better, and what those of the fit attain where the likelihood is a
 /// parabola over their errors. Offsets are unknown, a rig that is given is known.
 /// @throws InvalidArgument for values out of range, naming them
-/// Accuracy: the standard errors of simulated fits scatter about these by what their number leaves
-/// (tests/identification/plan_test.cc: 150 loops, 17 %), unless an error is of the order of its
-/// parameter.
+/// Accuracy: standard errors of simulated fits scatter about these by what their number leaves
+/// (plan_test.cc: 150 loops, 17 %), unless an error is of the order of its parameter.
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol);
 
 /// A standard error that is wanted.
@@ -62,9 +61,8 @@ struct Precision {
 /// Maps a parameter ("sigma", "alpha", "slip_force" …) to its wanted precision.
 using WantedPrecision = std::map<std::string, Precision>;
 
-/// Returns the factor on the protocol's number of cycles that reaches the wanted precision, errors
-/// falling with the root of the number: <= 1 where it is reached; infinite where the loop does not
-/// determine a parameter.
+/// Returns the factor on the number of cycles that reaches the wanted precision, errors falling
+/// with its root: <= 1 where it is reached; infinite where the loop leaves a parameter open.
 /// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
 double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
 

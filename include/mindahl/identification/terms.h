@@ -92,8 +92,7 @@ struct Term {
   std::string_view name;
   std::string_view unit = "-";
   std::string_view meaning;  ///< one line, for tables of the documents
-  /// One parameter for each record, numbered from 1 if there are several (force_offset_2); else one
-  /// of the contact, shared by all records.
+  /// One parameter a record, numbered from 1 (force_offset_2); else one of the contact, for all.
   bool is_of_record = false;
   Presence presence = Presence::kOnDemand;
   bool positive = false;
@@ -110,8 +109,7 @@ struct Term {
   /// Name of the term without which this one cannot be fitted; empty: none.
   std::string_view needs = {};
   ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
-  /// The default bound is an end of the theory's: Jenkins' α, no slip force at rest, no gap. At the
-  /// others a search that stops is cut short.
+  /// The default bound is the theory's: Jenkins' α, no gap. At the others a search is cut short.
   bool lowest_is_of_theory = false;
   bool highest_is_of_theory = false;
   bool is_never_negative = false;  ///< a mass or a damping that is stands for something else
@@ -131,9 +129,8 @@ struct Term {
 
 /// Returns all parameters of a fit of `response`, in the order in which they are reported: the
 /// contact's, then a record's. They are the same, in the same places, for either response: of a
-/// displacement that answers an imposed force the compliance 1/σ is the linear one and Tc enters
-/// the law, where the contact is unloaded is the offset of the force, and what adds to the
-/// contact's force has no place.
+/// displacement that answers a force the compliance 1/σ is linear, Tc enters the law, the force's
+/// offset is where the contact is unloaded, and what adds to the contact's force has no place.
 std::span<const Term> Terms(loop::Channel response = loop::Channel::kForce);
 
 /// Returns the row of an id.
@@ -142,8 +139,7 @@ const Term& TermOf(TermId id, loop::Channel response = loop::Channel::kForce);
 /// Returns nullptr when there is none of that name, which is without a record's number.
 const Term* FindTerm(std::string_view name, loop::Channel response = loop::Channel::kForce);
 
-/// Returns the term of a parameter of a result, numbered or of a column; nullptr where there is
-/// none.
+/// Returns the term of a parameter of a result, numbered or of a column; nullptr if there is none.
 const Term* TermOfParameter(std::string_view parameter);
 
 /// A term, or a few that belong together, that a record may require.

@@ -3,9 +3,8 @@
 namespace mindahl::identification {
 
 /// Holds every number on which a verdict, a finding or the choice of a method depends: its unit,
-/// what it decides, and why it is there. A test notices when one that a single result decides is
-/// changed by a factor of two.
-/// Limits on the work of a solver are not here.
+/// what it decides, and why it is there; none that bounds a solver's work. A test notices when one
+/// that a single result decides is changed by a factor of two.
 struct Thresholds {
   /// [ΔAICc] Fits that differ by less are not distinguished. Evidence of e² to 1; by noise a
   /// superfluous parameter gains more with probability P(χ²₁ > 6) = 1.4 %.
@@ -14,8 +13,7 @@ struct Thresholds {
   /// before slip: the loop is that of a Jenkins element, whatever α.
   double rigid_beside_rig = 30.0;
   /// [rms over half gap or T*] A smaller misfit may be noise however long that remembers, and does
-  /// not speak against a slip force beyond the largest force. Two per cent of the force are visible
-  /// next to the loop's line in a plot.
+  /// not speak against a slip force beyond the largest force. Two per cent show in a plot.
   double poor_misfit = 0.02;
   /// [missed over half gap or T*] A model that misses more is indicative, not quantitative.
   /// Repeated tests of one seal differ by as much.
@@ -26,8 +24,7 @@ struct Thresholds {
   /// [p] Residuals that repeat, and omitted terms, are not noise if white noise makes them less
   /// often. 22 terms are tried, so one loop in forty has a cause by chance.
   double rare_chance = 1e-3;
-  /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
-  /// are nested loops, run-in or run-out.
+  /// [of the longest] Shorter strokes are not compared. They are nested loops, run-in or run-out.
   double main_stroke = 0.75;
   /// [upper over lower end] σ or Tc does not count as known if its 95 % interval is wider. A
   /// factor of three either way: the order of magnitude.
@@ -36,8 +33,7 @@ struct Thresholds {
   /// Jenkins', Mindlin's and Dahl's exponents alike.
   double widest_shape = 1.0;
   /// [2 ln Λ] A slip force of far_slip_force is not excluded if it costs less. Five standard
-  /// errors: by the 95 % test alone one loop in twenty far from slip would pass for one that
-  /// slips.
+  /// errors: by the 95 % test one loop in twenty far from slip would pass for one that slips.
   double open_slip_force = 25.0;
   /// [of the largest force] A slip force that is not excluded here leaves the interval of Tc open.
   /// The loop is then that of an elastic contact, to a twentieth of its force.
@@ -52,19 +48,16 @@ struct Thresholds {
   /// [of the samples] A fit is assumed to absorb no more of autocorrelated noise. Beyond it the
   /// residuals no longer determine the noise: its variance is at most doubled.
   double most_absorbed = 0.5;
-  /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
-  /// by less than 1 % of Tc.
+  /// [α] A smaller exponent at its bound is Jenkins'. The branches differ by less than 1 % of Tc.
   double jenkins_shape = 0.01;
-  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
-  /// hundred is doubted.
+  /// [p] Residuals less likely from noise are not noise. One adequate loop in 200 is doubted.
   double doubt = 0.005;
   /// [p] Intervals include what omitted terms would change if noise alone makes these less often.
   /// Between doubt and this chance the model stands, but the record does not rule them out.
   double omission_chance = 0.2;
   /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
-  /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
-  /// those of another minimum or a worse term. Noise by pure error or by neighbours is known to a
-  /// few per cent: half as much again is more.
+  /// tests of omitted terms say; larger than the last fit's or another term's, they are of another
+  /// minimum or a worse term. Noise is known to a few per cent: half as much again is more.
   double larger_rms = 1.5;
   /// [samples] Columns of omitted terms are looked for if so many samples pay for each. With fewer
   /// the columns together explain much of any noise.
@@ -76,11 +69,9 @@ struct Thresholds {
   /// [p] The gain of a term that is added has no greater probability by chance, over all
   /// candidates of a round. One selection in twenty adds a term too many.
   double added_by_chance = 0.05;
-  /// [of the rms] A term that is added reduces it by more. Three per cent of a misfit change no
-  /// verdict.
+  /// [of the rms] An added term reduces it by more. Three per cent of a misfit change no verdict.
   double worthwhile_gain = 0.03;
-  /// [of the misfit] A term is advised if it reduces the misfit by more. Another fit is asked for:
-  /// less cannot be seen in the loop.
+  /// [of the misfit] An advised term reduces it by more. Less cannot be seen in the loop.
   double advised_gain = 0.1;
   /// [mean square over the white part] Residuals that are less are nearly white: with a term that
   /// leaves no more, Tc may leave the half gap. A tenth of the rms is what the law still misses.
@@ -94,13 +85,11 @@ struct Thresholds {
   /// [of the samples] A displacement that repeats its last reading more often may be held. Of
   /// every fifth reading that is held, noise is no explanation.
   double held_readings = 0.2;
-  /// [strokes] A poor misfit whose residuals stay correlated for longer is not taken for noise.
-  /// Within half a stroke the force passes through the whole law: noise of that length cannot be
-  /// distinguished from a misfit.
+  /// [strokes] A poor misfit whose residuals stay correlated for longer is not taken for noise. In
+  /// half a stroke the force passes through the law: such noise looks like a misfit.
   double noise_memory = 0.5;
   /// [correlation] A poor misfit that correlates more from one stroke to the next of its direction
-  /// is not taken for noise. Noise of so long a memory cannot be distinguished from a contact that
-  /// changes.
+  /// is not taken for noise. Noise of so long a memory looks like a contact that changes.
   double carried_over = 0.3;
   /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
   /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
@@ -108,12 +97,10 @@ struct Thresholds {
   /// [places of the loop] If every cycle samples fewer, σ and α are not identifiable. Four each
   /// for σ, α, Tc and for where the motion turns between them.
   double fewest_places = 16.0;
-  /// [of X] Samples of the loop that are closer are at the same place. The force then differs by a
-  /// hundredth of σX at most.
+  /// [of X] Closer samples are at one place. The force differs by a hundredth of σX at most.
   double same_place = 0.01;
-  /// [of the range] A record of two strokes that ends this near to its beginning, in both
-  /// channels, is a closed cycle. A step of 300 samples a cycle is as long, and noise of one per
-  /// cent.
+  /// [of the range] A record of two strokes that ends this near to its beginning, in both channels,
+  /// is a closed cycle. A step of 300 samples a cycle is as long, as is noise of 1 %.
   double one_cycle = 0.02;
   /// [of the range] A record that starts nearer to the end of its strokes has turned there. A
   /// virgin curve that is cut shorter shows no difference from a steady loop.
@@ -135,8 +122,7 @@ struct Thresholds {
   /// step is a fortieth of the stiff part of a loop, and the same in every stroke.
   double coarse_step = 0.05;
   /// [R²] A loop that explains less of the force is not seen, and no parameter is given. The rest
-  /// of the force is three times the loop: if a tenth of it is regular, that is a third of the
-  /// loop.
+  /// is three times the loop: if a tenth of that is regular, it is a third of the loop.
   double seen_loop = 0.1;
   /// [of the load] Records whose mean loads differ by more are a load series, and the law follows
   /// a load that varies by more: the amplitude of a sine with its standard deviation, without the
@@ -148,9 +134,8 @@ struct Thresholds {
   /// [half gap over half gap] Files that differ by more may be of different loads or tests.
   /// Repeated tests of one contact differ by less than a factor of two.
   double other_test = 2.0;
-  /// [of Tc] A loop that leaves more of the slip force unreached does not slip grossly: of a steady
-  /// one that determines no asymmetry. The part that never slips may bear any force between its
-  /// limits, which moves the asymmetry by as much.
+  /// [of Tc] A loop that leaves more of Tc unreached does not slip grossly: a steady one determines
+  /// no asymmetry. What never slips may bear any force between its limits, as may the asymmetry.
   double never_slips = 0.01;
   /// [standard deviations] A prior further from the estimate without it contradicts the records. A
   /// correct prior lies that far once in 370 fits.
