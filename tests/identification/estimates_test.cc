@@ -180,7 +180,7 @@ TEST(Intervals, AreTheUnionOfTheirParts) {
   EXPECT_FALSE(estimate.upper95) << "an end that is no number is open";
   Include(estimate, {.lower = 0.5, .upper = 0.5});
   EXPECT_FALSE(estimate.upper95) << "and stays open";
-  WithdrawInterval(estimate);
+  SetInterval(estimate, {});
   EXPECT_FALSE(estimate.lower95 || estimate.upper95);
 }
 

@@ -239,15 +239,14 @@ TEST(Grade, GapIsThatAtTheMeanLoad) {
 
 TEST(Intervals, StayWithinBoundsOfTheTheoryAndOfTheUserAndAreOpenBeyondThoseOfTheSearch) {
   Parameter shape{.term = &TermOf(TermId::kAlpha), .lower = 0.0, .upper = 20.0};
-  EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).lower, 0.0);
-  EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 19.0}).upper, 19.0);
-  EXPECT_FALSE(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).upper) << "the search's own";
+  EXPECT_EQ(EndsWithinBounds(shape, -0.2, 30.0).lower, 0.0);
+  EXPECT_EQ(EndsWithinBounds(shape, -0.2, 19.0).upper, 19.0);
+  EXPECT_FALSE(EndsWithinBounds(shape, -0.2, 30.0).upper) << "the search's own";
   shape.bounded_by_user = true;
-  EXPECT_EQ(WithinBounds(shape, {.lower = -0.2, .upper = 30.0}).upper, 20.0);
+  EXPECT_EQ(EndsWithinBounds(shape, -0.2, 30.0).upper, 20.0);
   shape.scale = -1.0;  // the value falls where θ grows
-  EXPECT_EQ(WithinBounds(shape, {.lower = -30.0, .upper = 1.0}).lower, -20.0);
-  EXPECT_EQ(WithinBounds(shape, {.lower = -30.0, .upper = 1.0}).upper, 0.0);
-  EXPECT_FALSE(WithinBounds(shape, {.lower = -30.0}).upper) << "what is open stays so";
+  EXPECT_EQ(EndsWithinBounds(shape, -1.0, 30.0).lower, -20.0);
+  EXPECT_EQ(EndsWithinBounds(shape, -1.0, 30.0).upper, 0.0);
 }
 
 }  // namespace

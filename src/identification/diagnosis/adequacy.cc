@@ -195,7 +195,7 @@ void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result) {
     const bool covers = is_loop && estimate.includes_discrepancy &&
                         (adequacy.use != Use::kNone || estimate.name == "slip_force");
     if (estimate.status == ParameterStatus::kFixed || covers) continue;
-    WithdrawInterval(estimate);
+    SetInterval(estimate, {});
     finding.parameters.push_back(estimate.name);
   }
   result.findings.insert(result.findings.begin(), std::move(finding));

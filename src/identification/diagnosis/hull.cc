@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/extremes.h"
 #include "core/probability.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/solve/search.h"
@@ -23,11 +24,10 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters) {
   for (const auto& [p, value] :
        {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
     ParameterEstimate& estimate = parameters[p];
-    if (estimate.lower95 && estimate.upper95) {
-      IncludeRatios(estimate, std::array{value / estimate.value});
-    } else {
-      Include(estimate, {.lower = value, .upper = value});
-    }
+    const double ratio = value / estimate.value;
+    const bool is_closed = estimate.lower95 && estimate.upper95;
+    Include(estimate, {.lower = is_closed ? ratio * *estimate.lower95 : value,
+                       .upper = is_closed ? ratio * *estimate.upper95 : value});
   }
 }
 
@@ -96,7 +96,6 @@ void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {
   const double of_stroke = result.EncoderStep() / result.WidestRecord().facts.amplitude;
   const auto cover = [&](std::size_t p, double half) {
     ParameterEstimate& estimate = result.parameters[p];
-    if (!(half > 0)) return;
     Include(estimate,
             {.lower = std::max(estimate.value - half, 0.0), .upper = estimate.value + half});
   };
@@ -117,9 +116,7 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
     const Eigen::Index place = std::ranges::find(free, p) - free.begin();
     const auto include = [&](double step, double half) {
       const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
-      const auto [lower, upper] =
-          std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
-      Include(estimates[k], WithinBounds(parameter, {.lower = lower, .upper = upper}));
+      Include(estimates[k], EndsWithinBounds(parameter, from - half, from + half));
     };
     if (place >= test.step.size()) continue;
     include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
@@ -187,21 +184,21 @@ std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresho
   return is_known ? std::optional(ratio) : std::nullopt;
 }
 
-/// The same over an eighth, a quarter and a half of the change, and at the reversal itself: by the
-/// parabola through these, and as much again within the narrowest as is seen of it.
-std::vector<double> RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresholds) {
+/// Returns the least and greatest of the same over an eighth, a quarter and a half of the change,
+/// and at the reversal itself: by the parabola through these, and as much again within the
+/// narrowest as is seen of it. 1 where none is known.
+Extremes RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresholds) {
   std::vector<double> ratios;
-  if (estimates.problem().data->is_forced()) return ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
     const std::optional<double> ratio = RatioOfStiffness(estimates, thresholds, window);
     if (ratio) ratios.push_back(*ratio);
   }
-  if (ratios.empty()) return ratios;
+  if (ratios.empty()) return {1.0, 1.0};
   const double parabola =
       ratios.size() > 2 ? 8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3 : 0.0;
   ratios.push_back(ratios[0] * ratios[0]);
   if (parabola > 0) ratios.push_back(parabola);
-  return ratios;
+  return ExtremesOf(ratios);
 }
 
 }  // namespace
@@ -210,7 +207,12 @@ ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& t
                                     const FitResult& result) {
   ParameterEstimates parameters = result.parameters;
   ParameterEstimate& slip_force = parameters[kSlipForce];
-  IncludeRatios(parameters[kStiffness], RatiosOfStiffness(fitted, thresholds));
+  ParameterEstimate& stiffness = parameters[kStiffness];
+  if (stiffness.lower95 && stiffness.upper95 && !fitted.problem().data->is_forced()) {
+    const auto [least, greatest] = RatiosOfStiffness(fitted, thresholds);
+    Include(stiffness,
+            {.lower = least * *stiffness.lower95, .upper = greatest * *stiffness.upper95});
+  }
   for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
     estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed;

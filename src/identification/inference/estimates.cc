@@ -15,8 +15,6 @@ namespace mindahl::identification {
 
 namespace {
 
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
 ParameterStatus StatusOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return ParameterStatus::kFixed;
   const BoundSide side = SideOf(parameter, theta);
@@ -24,6 +22,10 @@ ParameterStatus StatusOf(const Parameter& parameter, double theta) {
   const bool mirrored = parameter.scale < 0;
   return (side == BoundSide::kLower) != mirrored ? ParameterStatus::kAtLowerBound
                                                  : ParameterStatus::kAtUpperBound;
+}
+
+std::optional<double> Finite(std::optional<double> end) {
+  return end && std::isfinite(*end) ? end : std::nullopt;
 }
 
 }  // namespace
@@ -185,32 +187,17 @@ double Estimates::SamplesOf(std::size_t parameter) const {
 void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const Parameter& parameter = problem_.parameters[p];
   const double theta = solution_.theta[p];
-  const BoundSide side = SideOf(parameter, theta);
-  WithdrawInterval(estimate);
-  if (parameter.fixed) return;
   const double error = ErrorOfTheta(p);
-  if (!std::isfinite(error)) return;
-  std::optional<double> lower;
-  std::optional<double> upper;
-  if (side != BoundSide::kInside) {
-    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
-    // that is the program's own, nothing is known of what lies beyond it.
-    const double inwards = side == BoundSide::kLower ? 1 : -1;
-    const double end = parameter.ToValue(theta + inwards * NormalQuantile(confidence_) * error);
-    const std::optional<double> bound =
-        IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
-    const bool is_upwards = end > estimate.value;
-    lower = is_upwards ? bound : end;
-    upper = is_upwards ? end : bound;
-  } else {
+  SetInterval(estimate, {});
+  if (parameter.fixed || !std::isfinite(error)) return;
+  const bool is_inside = SideOf(parameter, theta) == BoundSide::kInside;
+  // At a bound half the normal law lies beyond it.
+  const double half = (is_inside ? quantile_ : NormalQuantile(confidence_)) * error;
+  if (is_inside) {
     estimate.standard_error =
         parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;
-    lower = parameter.ToValue(theta - quantile_ * error);
-    upper = parameter.ToValue(theta + quantile_ * error);
-    if (*upper < *lower) std::swap(lower, upper);
   }
-  SetInterval(estimate, WithinBounds(parameter, {.lower = lower, .upper = upper}));
-  if (!estimate.lower95 || !estimate.upper95) estimate.standard_error.reset();
+  SetInterval(estimate, EndsWithinBounds(parameter, theta - half, theta + half));
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
@@ -234,49 +221,33 @@ double Estimates::FStatistic(std::size_t parameter, double sum_of_squares) const
   return rise * white_factor_(*place, *place) / variance;
 }
 
-Ends WithinBounds(const Parameter& parameter, Ends ends) {
-  for (const auto& [side, theta] : {std::pair(BoundSide::kLower, parameter.lower),
-                                    std::pair(BoundSide::kUpper, parameter.upper)}) {
-    const double bound = parameter.ToValue(theta);
-    const bool is_least = (side == BoundSide::kLower) == (parameter.scale > 0);
-    std::optional<double>& end = is_least ? ends.lower : ends.upper;
-    if (!end || !(is_least ? *end < bound : *end > bound)) continue;
-    end = IsSearchLimit(parameter, side) ? std::nullopt : std::optional(bound);
-  }
+std::optional<double> ValueAtBound(const Parameter& parameter, BoundSide side) {
+  if (IsSearchLimit(parameter, side)) return std::nullopt;
+  return parameter.ToValue(side == BoundSide::kLower ? parameter.lower : parameter.upper);
+}
+
+Ends EndsWithinBounds(const Parameter& parameter, double from, double to) {
+  Ends ends{.lower = from < parameter.lower ? ValueAtBound(parameter, BoundSide::kLower)
+                                            : parameter.ToValue(from),
+            .upper = to > parameter.upper ? ValueAtBound(parameter, BoundSide::kUpper)
+                                          : parameter.ToValue(to)};
+  if (parameter.scale < 0) std::swap(ends.lower, ends.upper);
   return ends;
 }
 
 void SetInterval(ParameterEstimate& estimate, Ends ends) {
-  const auto closed = [](double end) {
-    return std::isfinite(end) ? std::optional(end) : std::nullopt;
-  };
-  estimate.lower95 = closed(ends.lower.value_or(-kUnbounded));
-  estimate.upper95 = closed(ends.upper.value_or(kUnbounded));
+  estimate.lower95 = Finite(ends.lower);
+  estimate.upper95 = Finite(ends.upper);
+  if (estimate.lower95 && estimate.upper95) return;
+  estimate.standard_error.reset();
+  estimate.includes_discrepancy = false;
 }
 
 void Include(ParameterEstimate& estimate, Ends ends) {
-  // std::min and std::max return their first argument where it is NaN, and SetInterval() opens that
-  // end.
-  const double lower =
-      std::min(ends.lower.value_or(-kUnbounded), estimate.lower95.value_or(-kUnbounded));
-  const double upper =
-      std::max(ends.upper.value_or(kUnbounded), estimate.upper95.value_or(kUnbounded));
-  SetInterval(estimate, {.lower = lower, .upper = upper});
-}
-
-void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios) {
-  if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) return;
-  const Ends ends{estimate.lower95, estimate.upper95};
-  for (const double ratio : ratios) {
-    Include(estimate, {.lower = ratio * *ends.lower, .upper = ratio * *ends.upper});
-  }
-}
-
-void WithdrawInterval(ParameterEstimate& estimate) {
-  estimate.standard_error.reset();
-  estimate.lower95.reset();
-  estimate.upper95.reset();
-  estimate.includes_discrepancy = false;
+  // An empty end is less than any other; of a NaN std::min and std::max return the first argument.
+  estimate.lower95 = Finite(std::min(ends.lower, estimate.lower95));
+  estimate.upper95 = ends.upper && estimate.upper95 ? Finite(std::max(ends.upper, estimate.upper95))
+                                                    : std::nullopt;
 }
 
 }  // namespace mindahl::identification

@@ -28,22 +28,19 @@ struct Ends {
 
 // The one place where the interval of an estimate is written, the union of its parts.
 
-/// Keeps the ends within bounds that are the user's or the theory's; one beyond a limit of the
-/// search, which says nothing of what lies there, is open.
-Ends WithinBounds(const Parameter& parameter, Ends ends);
+/// Returns the value at a bound that is the user's or the theory's; empty at a limit of the search,
+/// which says nothing of what lies beyond.
+std::optional<double> ValueAtBound(const Parameter& parameter, BoundSide side);
 
-/// Begins the interval anew. An end that is not finite is open.
+/// Returns the values of an interval of θ; an end beyond a bound is ValueAtBound().
+Ends EndsWithinBounds(const Parameter& parameter, double from, double to);
+
+/// Begins the interval anew. An end that is not finite is open; there is no standard error then.
 void SetInterval(ParameterEstimate& estimate, Ends ends);
 
 /// Extends the interval by a part: an end that is open in either is open from then on. Leaves an
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, Ends ends);
-
-/// Extends a closed interval to itself times each of the ratios; leaves an open one as it is.
-void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios);
-
-/// Takes back the interval and the standard error.
-void WithdrawInterval(ParameterEstimate& estimate);
 
 /// A problem near one point.
 struct Linearization {

@@ -95,9 +95,8 @@ class HeldParameter {
       return std::nullopt;
     }
     if (step) return of.ToValue(from + towards * *step);
-    const BoundSide side = towards < 0 ? BoundSide::kLower : BoundSide::kUpper;
-    const bool is_bound = limit == (towards < 0 ? of.lower : of.upper);
-    return is_bound && !IsSearchLimit(of, side) ? std::optional(of.ToValue(limit)) : std::nullopt;
+    if (limit != (towards < 0 ? of.lower : of.upper)) return std::nullopt;
+    return ValueAtBound(of, towards < 0 ? BoundSide::kLower : BoundSide::kUpper);
   }
 
  private:
@@ -203,8 +202,7 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
     ParameterEstimate& estimate = estimate_of(p);
     // The search for one parameter's end may pass what another's did not find.
     for (const std::vector<double>& theta : region) {
-      const double value = of_problem[p].ToValue(theta[p]);
-      Include(estimate, WithinBounds(of_problem[p], {.lower = value, .upper = value}));
+      Include(estimate, EndsWithinBounds(of_problem[p], theta[p], theta[p]));
     }
     if (!estimate.lower95 || !estimate.upper95) {
       estimate.standard_error.reset();
@@ -217,15 +215,11 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   if (IsFree(fitted, kSpring) && !parameters[kStiffness].upper95) {
     ParameterEstimate& spring = estimate_of(kSpring);  // what it adds to σ is determined, not each
     SetInterval(spring, {.upper = spring.upper95});
-    spring.standard_error.reset();
   }
   // With α at its upper bound, the likelihood does not determine the lower end of Tc either.
-  const bool by_bound = parameters[kShape].status == ParameterStatus::kAtUpperBound;
-  if (by_bound) SetInterval(slip_force, {.lower = 0.0});
   ParameterEstimate& shape = parameters[kShape];
-  if (shape.status == ParameterStatus::kFixed) return parameters;
-  SetInterval(shape, {.lower = shape.lower95});
-  shape.standard_error.reset();
+  if (shape.status == ParameterStatus::kAtUpperBound) SetInterval(slip_force, {.lower = 0.0});
+  if (shape.status != ParameterStatus::kFixed) SetInterval(shape, {.lower = shape.lower95});
   return parameters;
 }
 
