@@ -140,7 +140,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     return choice;
   }
   const FitResult& better = other->likelihood_rms < fit.likelihood_rms ? *other : fit;
-  const Evidence evidence(data.counted, IndependentSamples(data, better, options.thresholds));
+  const Evidence evidence{data.counted, IndependentSamples(data, better, options.thresholds)};
   const auto criterion = [&](const FitResult& of) {
     const double rms = of.likelihood_rms / data.response_unit();
     return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());

@@ -92,7 +92,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
   const FitResult& best =
       *std::ranges::min_element(compared | std::views::values, {}, &FitResult::likelihood_rms);
   const auto samples = static_cast<double>(best.residuals.samples);
-  const Evidence evidence(best.residuals.samples, best.residuals.effective_samples);
+  const Evidence evidence{best.residuals.samples, best.residuals.effective_samples};
   const std::vector<SampleRange> cycles = CyclesOf(best);
   std::vector<ModelScore> scores;
   for (auto& [own, fit] : compared) {

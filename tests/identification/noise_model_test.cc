@@ -177,13 +177,13 @@ constexpr double kRounding = 1e-13;  // of numbers up to a hundred
 
 TEST(Evidence, LikelihoodRatioIsThatOfTheEffectiveSamples) {
   // n_eff·ln(SS₀/SS₁), whatever the samples' number.
-  EXPECT_NEAR(Evidence(100, 40.0).LikelihoodRatio(3.0, 2.0), 40 * std::log(1.5), kRounding);
-  EXPECT_NEAR(Evidence(50, 40.0).LikelihoodRatio(3.0, 2.0), 40 * std::log(1.5), kRounding);
-  EXPECT_LT(Evidence(100, 40.0).LikelihoodRatio(2.0, 3.0), 0.0) << "the larger sum loses";
+  EXPECT_NEAR((Evidence{100, 40.0}.LikelihoodRatio(3.0, 2.0)), 40 * std::log(1.5), kRounding);
+  EXPECT_NEAR((Evidence{50, 40.0}.LikelihoodRatio(3.0, 2.0)), 40 * std::log(1.5), kRounding);
+  EXPECT_LT((Evidence{100, 40.0}.LikelihoodRatio(2.0, 3.0)), 0.0) << "the larger sum loses";
 }
 
 TEST(Evidence, RoundingErrorsSayNothing) {
-  const Evidence evidence(100, 40.0);
+  const Evidence evidence{100, 40.0};
   const double floor = 100 * kRoundingRms * kRoundingRms;
   EXPECT_EQ(evidence.LikelihoodRatio(floor / 2, 0.0), 0.0);
   EXPECT_NEAR(evidence.LikelihoodRatio(4 * floor, floor / 8), 40 * std::log(4.0), 1e-10);
@@ -193,9 +193,9 @@ TEST(Evidence, RoundingErrorsSayNothing) {
 
 TEST(Evidence, AiccHasTheSmallSampleTermOfAllSamplesAndTheVarianceForAParameter) {
   // k = 3 + 1: 8·ln(5/20) + 2·4 + 2·4·5/(20 − 4 − 1)
-  EXPECT_NEAR(Evidence(20, 8.0).Aicc(5.0, 3), 8 * std::log(0.25) + 8 + 40.0 / 15, kRounding);
+  EXPECT_NEAR((Evidence{20, 8.0}.Aicc(5.0, 3)), 8 * std::log(0.25) + 8 + 40.0 / 15, kRounding);
   // Nothing is divided by less than one.
-  EXPECT_NEAR(Evidence(5, 5.0).Aicc(5.0, 4), 10 + 60, kRounding);
+  EXPECT_NEAR((Evidence{5, 5.0}.Aicc(5.0, 4)), 10 + 60, kRounding);
 }
 
 TEST(Noise, DegreesOfFreedomAreEffectiveSamplesLessParameters) {

@@ -2,41 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "identification/inference/estimates.h"
+#include "identification/inference/noise.h"
 
 namespace mindahl::identification {
 
-double WhiteVariance(const FitResult& result) {
-  constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
-  double squares = 0.0;
-  double count = 0.0;
-  for (const RecordFit& record : result.records) {
-    for (std::size_t i = 1; i + 1 < record.residual.size(); ++i) {
-      if (record.counts[i - 1] == 0 || record.counts[i] == 0 || record.counts[i + 1] == 0) continue;
-      const double off = (record.residual[i - 1] + record.residual[i + 1]) / 2 - record.residual[i];
-      squares += off * off;
-      ++count;
-    }
-  }
-  return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
-}
-
 namespace {
 
-/// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
-/// of both directions come back, of what does not repeat with them, else what differs between
-/// neighbouring samples.
+/// Returns the variance [N² or m²] of noise whatever the model: where strokes of both directions
+/// come back, of what does not repeat with them, else what differs between neighbouring samples.
 double NoiseVariance(const FitResult& result) {
   double share = 1.0;
   bool comes_back = false;
   for (const RecordFit& record : result.records) {
-    const ResidualStructure& structure = record.structure;
-    share = std::min(share, structure.noise_share);
-    const auto& [rising, falling] = structure.strokes;
-    comes_back = comes_back || (rising > 1 && falling > 1);
+    share = std::min(share, record.structure.noise_share);
+    comes_back = comes_back || std::ranges::min(record.structure.strokes) > 1;
   }
   return comes_back ? share * result.rms * result.rms : WhiteVariance(result);
 }
@@ -47,32 +29,24 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
   constexpr double kFarthest = 1.25;
   if (!loop::Slides(facts)) return false;
   const double ratio = with / *facts.half_gap;
-  if (ratio <= kFarthest && ratio >= 1 / kFarthest) return false;
-  const auto distance = [&](double slip_force) {
-    return std::abs(slip_force / *facts.half_gap - 1);
-  };
-  return !(distance(with) < distance(without));
+  const double before = without / *facts.half_gap;
+  const bool is_far = ratio > kFarthest || ratio < 1 / kFarthest;
+  return is_far && !(std::abs(ratio - 1) < std::abs(before - 1));
 }
 
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
   constexpr const char* kName = "slip_force";
-  // Below, nothing says that the model does not follow the record.
-  if (result.depth < Depth::kIntervals) return std::nullopt;
   const Thresholds& thresholds = options.thresholds;
-  // The other law may carry it.
-  if (result.prefers_other_law()) return std::nullopt;
+  // Below Depth::kIntervals every model counts as adequate. The other law may carry the force.
   const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
                            result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
-  if (is_followed || result.parameters.empty() || result.response == loop::Channel::kDisplacement ||
-      result.is_scaled_by_load() || options.bounds.contains(kName) ||
-      options.fixed.contains(kName)) {
+  if (is_followed || result.prefers_other_law() || result.is_scaled_by_load() ||
+      result.response == loop::Channel::kDisplacement || options.bounds.contains(kName) ||
+      options.fixed.contains(kName) || !loop::Slides(result.WidestRecord().facts)) {
     return std::nullopt;
   }
   const double peak_force = result.PeakForce();
-  if (!loop::Slides(result.WidestRecord().facts) ||
-      peak_force >= thresholds.mobilised * result.law.slip_force) {
-    return std::nullopt;
-  }
+  if (peak_force >= thresholds.mobilised * result.law.slip_force) return std::nullopt;
   FitOptions within = options;
   within.bounds[kName] = {0.0, peak_force};
   within.start.clear();
@@ -103,14 +77,11 @@ std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& th
 }
 
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
-  const double size = result.MisfitScale();
-  const bool is_small =
-      result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
-  if (is_small) return false;
-  const bool is_carried_over = std::ranges::any_of(result.records, [&](const RecordFit& record) {
-    return record.structure.carried_over > thresholds.carried_over;
-  });
-  if (is_carried_over) return true;
+  const double least = thresholds.poor_misfit * result.MisfitScale();
+  if (result.outliers > 0 || !(least > 0) || !(result.residuals.rms > least)) return false;
+  for (const RecordFit& record : result.records) {
+    if (record.structure.carried_over > thresholds.carried_over) return true;
+  }
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   const double forgotten = -std::log(correlation);
@@ -124,12 +95,12 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds) {
-  Adequacy adequacy;
-  adequacy.misfit_over_noise = test.misfit_over_noise;
-  adequacy.misfit = test.misfit_over_noise * test.noise * data.response_unit();
-  adequacy.p_value = test.p_value;
-  adequacy.tried = test.fits.size();
-  adequacy.causes.assign(causes.begin(), causes.end());
+  Adequacy adequacy{.misfit_over_noise = test.misfit_over_noise,
+                    .misfit = test.misfit_over_noise * test.noise * data.response_unit(),
+                    .p_value = test.p_value,
+                    .causes = {causes.begin(), causes.end()},
+                    .misfit_over_half_gap = {},
+                    .tried = test.fits.size()};
   const double noise = NoiseVariance(result);
   const double square = result.rms * result.rms;
   // The rms includes the readings that a robust loss weighs down.
@@ -158,13 +129,12 @@ void GradeUse(const Thresholds& thresholds, FitResult& result) {
   adequacy.misfit = MissedForce(result);
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   if (half_gap) adequacy.misfit_over_half_gap = adequacy.misfit / *half_gap;
-  const double scale = half_gap ? *half_gap : result.MisfitScale();
-  const double ratio =
-      scale > 0 ? adequacy.misfit / scale : std::numeric_limits<double>::infinity();
-  const bool is_seen = IsLoopSeen(result, thresholds);
-  adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
-                 : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
-                                                                    : Use::kNone;
+  const double scale = half_gap.value_or(result.MisfitScale());
+  const double ratio = adequacy.misfit / scale;
+  adequacy.use = Use::kNone;
+  if (!IsLoopSeen(result, thresholds) || !(scale > 0)) return;
+  if (ratio <= thresholds.failing_misfit) adequacy.use = Use::kIndicative;
+  if (ratio <= thresholds.quantitative_misfit) adequacy.use = Use::kQuantitative;
 }
 
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds) {
@@ -203,22 +173,15 @@ void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result) {
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {
   for (ParameterEstimate& estimate : estimates) {
-    estimate.identifiability = estimate.includes_discrepancy ? Identifiability::kEffective
-                                                             : Identifiability::kIdentifiable;
+    Identifiability& verdict = estimate.identifiability;
+    verdict = estimate.includes_discrepancy ? Identifiability::kEffective
+                                            : Identifiability::kIdentifiable;
     if (estimate.status == ParameterStatus::kFixed) continue;
-    const auto worsen = [&](Identifiability verdict) {
-      estimate.identifiability = std::max(estimate.identifiability, verdict);
-    };
-    if (!estimate.lower95) {
-      worsen(Identifiability::kNotIdentifiable);
-    } else if (!estimate.upper95) {
-      worsen(Identifiability::kBoundedBelow);
-    }
+    if (!estimate.upper95) verdict = Identifiability::kBoundedBelow;
+    if (!estimate.lower95) verdict = Identifiability::kNotIdentifiable;
     for (const Finding& finding : findings) {
-      const auto& named = finding.parameters;
-      if (std::ranges::find(named, estimate.name) != named.end()) {
-        worsen(finding.code.row().verdict);
-      }
+      const bool is_named = std::ranges::count(finding.parameters, estimate.name) > 0;
+      if (is_named) verdict = std::max(verdict, finding.code.row().verdict);
     }
   }
 }

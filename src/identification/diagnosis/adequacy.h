@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "identification/gram/omitted_terms.h"
-#include "mindahl/identification/adequacy.h"
-#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
@@ -28,15 +26,9 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 /// is preferred, or the user limits Tc.
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options);
 
-/// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
-/// part that the causes explain or that comes back in every stroke; of others all of them but their
-/// white noise.
+/// Returns the rms of what the model misses [N or m]: of residuals that look like noise the part
+/// that the causes explain, of others all of them but their white noise.
 double MissedForce(const FitResult& result);
-
-/// Returns the variance [N² or m²] of the white part of the residuals that count: 2/3 of the mean
-/// square of a residual's distance from the middle of its neighbours (Gasser, Sroka &
-/// Jennen-Steinmetz 1986).
-double WhiteVariance(const FitResult& result);
 
 /// Returns the omitted terms that noise alone does not make, the best first, without those that
 /// another beats clearly.
@@ -59,25 +51,21 @@ bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds);
 /// next for −1/ln ρ samples, longer than noise_memory.
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 
-/// Sets `misfit`, `misfit_over_half_gap` and `use` of the adequacy. Without a half gap the use is
-/// judged by T*.
+/// Sets `misfit`, `misfit_over_half_gap` and `use`, which T* decides without a half gap.
 void GradeUse(const Thresholds& thresholds, FitResult& result);
 
-/// True unless the loop is so small against the rest of the force that its shape and height are
-/// those of the rest.
+/// True unless the loop is so small that its shape and height are those of the rest of the force.
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds);
 
-/// Sets the verdict on each parameter, from estimates and findings alone: the worst of
-///  - not identifiable without an interval, bounded below where the interval is open above;
-///  - what each finding that names the parameter calls for (kFindings);
-/// whatever the order of the findings (Identifiability is in the order of precedence). What the
-/// user holds is identifiable. A finding that names no parameter changes none.
+/// Sets the verdict on each parameter, from estimates and findings alone: the last in the order of
+/// Identifiability of what its interval says (not identifiable without one, bounded below where it
+/// is open above) and what each finding that names it calls for (kFindings). What the user holds is
+/// identifiable.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
-/// Withdraws errors, limits, tests and findings on parameters where nothing of a model is to be
-/// believed: where its misfit is no noise and as large as failing_misfit or, as kind "no_loop",
-/// where no loop is seen in the force. Adds `model_inadequate`, which names the parameters. Before
-/// Judge().
+/// Withdraws intervals and findings on parameters where the misfit is no noise and as large as
+/// failing_misfit or, as kind "no_loop", no loop is seen in the force. Adds `model_inadequate`,
+/// which names the parameters. Before Judge().
 void WithdrawIfInadequate(const Thresholds& thresholds, FitResult& result);
 
 }  // namespace mindahl::identification

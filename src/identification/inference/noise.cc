@@ -1,12 +1,10 @@
 #include "identification/inference/noise.h"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/probability.h"
-#include "identification/problem/scaled_records.h"
 
 namespace mindahl::identification {
 namespace {
@@ -17,20 +15,20 @@ constexpr std::size_t kSamplesPerOrder = 10;
 constexpr double kForgotten = 1e-9;
 constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to forget
 
-using Autocovariances = std::array<double, kHighestOrder + 1>;
+using Lags = Eigen::Array<double, kHighestOrder + 1, 1>;
 
 /// Returns the number of samples that count.
-std::size_t CountedSamplesOf(const ScaledRecord& record) {
-  return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+double CountedSamplesOf(const ScaledRecord& record) {
+  return static_cast<double>(std::ssize(record.counts) - std::ranges::count(record.counts, 0));
 }
 
 /// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
 /// that a series of this length has: without gaps that keeps the sequence positive definite.
-Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
-                                        std::span<const double> residual, std::size_t order) {
-  Autocovariances covariances{};
-  std::array<std::size_t, kHighestOrder + 1> pairs{};
-  std::array<std::size_t, kHighestOrder + 1> counting{};
+Lags EstimateAutocovariances(std::span<const ScaledRecord> records,
+                             std::span<const double> residual, std::size_t order) {
+  Lags sums = Lags::Zero();
+  Lags pairs = Lags::Zero();
+  Lags counting = Lags::Zero();
   for (const ScaledRecord& record : records) {
     const std::span<const double> own = record.Of(residual);
     // Lags within, so that their sums do not wait for each other.
@@ -38,61 +36,26 @@ Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
       for (std::size_t lag = 0; lag <= std::min(order, i); ++lag) {
         ++pairs[lag];
         if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
-        covariances[lag] += own[i] * own[i - lag];
+        sums[lag] += own[i] * own[i - lag];
         ++counting[lag];
       }
     }
   }
-  for (std::size_t lag = 0; lag <= order; ++lag) {
-    const double mean =
-        covariances[lag] / static_cast<double>(std::max<std::size_t>(counting[lag], 1));
-    covariances[lag] =
-        mean * static_cast<double>(pairs[lag]) / static_cast<double>(residual.size());
-  }
-  return covariances;
+  return sums / counting.max(1) * pairs / static_cast<double>(residual.size());
 }
 
-std::size_t HighestOrderOf(std::size_t count) {
-  return std::min(kHighestOrder, count / kSamplesPerOrder);
-}
-
-/// Solves by Levinson and Durbin: each order from the one before.
-/// @param count  samples that the covariances are of
-Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
-  Autocorrelation best;
-  if (!(covariance[0] > 0)) return best;
-  const auto samples = static_cast<double>(count);
-  std::array<double, kHighestOrder> coefficients{};
-  double variance = covariance[0];
-  double best_criterion = 0.0;  // of order 0, by how much others are better
-  for (std::size_t order = 1; order <= HighestOrderOf(count); ++order) {
-    double numerator = covariance[order];
-    for (std::size_t k = 1; k < order; ++k) {
-      numerator -= coefficients[k - 1] * covariance[order - k];
-    }
-    const double reflection = numerator / variance;
-    std::array<double, kHighestOrder> next{};
-    for (std::size_t k = 1; k < order; ++k) {
-      next[k - 1] = coefficients[k - 1] - reflection * coefficients[order - k - 1];
-    }
-    next[order - 1] = reflection;
-    coefficients = next;
-    variance *= 1 - reflection * reflection;
-    if (!(variance > 0)) break;
-    const double criterion = samples * std::log(variance / covariance[0]) +
-                             static_cast<double>(order) * std::log(samples);
-    if (criterion < best_criterion) {
-      best_criterion = criterion;
-      best.order = order;
-      best.coefficients = coefficients;
-      best.innovation_share = variance / covariance[0];
-    }
+/// Returns ρ₀, ρ₁ … of all lags, until they have decayed.
+std::vector<double> AllCorrelations(const Autocorrelation& process) {
+  const auto size = static_cast<std::ptrdiff_t>(process.order);
+  std::vector<double> all(process.correlations.begin(), process.correlations.begin() + size + 1);
+  // Beyond the order ρ obeys the recursion of r itself.
+  const auto is_remembered = [](double correlation) { return std::abs(correlation) >= kForgotten; };
+  while (std::any_of(all.rbegin(), all.rbegin() + size, is_remembered) &&
+         all.size() < kLongestMemory) {
+    all.push_back(
+        std::inner_product(all.rbegin(), all.rbegin() + size, process.coefficients.begin(), 0.0));
   }
-  // Yule and Walker's process has the correlations that it was made from, to its order.
-  for (std::size_t lag = 0; lag <= best.order; ++lag) {
-    best.correlations[lag] = covariance[lag] / covariance[0];
-  }
-  return best;
+  return all;
 }
 
 constexpr int kParts = 20;  // of a stroke's length
@@ -132,16 +95,12 @@ std::optional<double> RepeatingSquare(std::span<const Side> sides, const Thresho
   return chance <= thresholds.rare_chance ? repeating / parts : 0.0;
 }
 
-}  // namespace
-
-std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
-  std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
-  const double longest = std::ranges::max(strokes, {}, &Stroke::length).length;
-  std::erase_if(strokes, [&](const Stroke& stroke) {
-    return !(stroke.length > 0) || stroke.length < thresholds.main_stroke * longest;
-  });
-  return strokes;
+/// Returns a sum of squares that is no less than rounding errors leave.
+double Floored(double sum_of_squares, std::size_t samples) {
+  return std::max(sum_of_squares, static_cast<double>(samples) * kRoundingRms * kRoundingRms);
 }
+
+}  // namespace
 
 ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
   ResidualStatistics statistics;
@@ -170,6 +129,21 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records) {
   statistics.r_squared = variation > 0 ? 1 - sum_of_squares / variation : 0.0;
   statistics.durbin_watson = sum_of_squares > 0 ? sum_of_steps / sum_of_squares : 2.0;
   return statistics;
+}
+
+double WhiteVariance(const FitResult& result) {
+  constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
+  double squares = 0.0;
+  double count = 0.0;
+  for (const RecordFit& record : result.records) {
+    for (std::size_t i = 1; i + 1 < record.residual.size(); ++i) {
+      if (record.counts[i - 1] == 0 || record.counts[i] == 0 || record.counts[i + 1] == 0) continue;
+      const double off = (record.residual[i - 1] + record.residual[i + 1]) / 2 - record.residual[i];
+      squares += off * off;
+      ++count;
+    }
+  }
+  return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
 }
 
 ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
@@ -221,45 +195,62 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.counts[i] != 0) all_squares += residual[i] * residual[i];
   }
-  structure.noise_share = (1 - structure.repeatable_share) * mean_square *
-                          static_cast<double>(CountedSamplesOf(record)) / all_squares;
+  structure.noise_share =
+      (1 - structure.repeatable_share) * mean_square * CountedSamplesOf(record) / all_squares;
   return structure;
 }
 
 Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
                                         std::span<const double> residual) {
-  std::size_t count = 0;
-  for (const ScaledRecord& record : records) count += CountedSamplesOf(record);
-  return ProcessOf(EstimateAutocovariances(records, residual, HighestOrderOf(count)), count);
-}
-
-std::vector<double> Autocorrelation::AllCorrelations() const {
-  std::vector<double> all(correlations.begin(), correlations.begin() + order + 1);
-  double recent = order > 0 ? 1.0 : 0.0;
-  while (recent >= kForgotten && all.size() < kLongestMemory) {
-    // Beyond the order ρ obeys the recursion of r itself.
-    double next = 0.0;
-    for (std::size_t k = 0; k < order; ++k) next += coefficients[k] * all[all.size() - 1 - k];
-    all.push_back(next);
-    recent = 0.0;
-    for (std::size_t k = 0; k < order; ++k) {
-      recent = std::max(recent, std::abs(all[all.size() - 1 - k]));
+  double samples = 0.0;
+  for (const ScaledRecord& record : records) samples += CountedSamplesOf(record);
+  const auto highest =
+      std::min(kHighestOrder, static_cast<std::size_t>(samples) / kSamplesPerOrder);
+  const Lags covariance = EstimateAutocovariances(records, residual, highest);
+  Autocorrelation best;
+  if (!(covariance[0] > 0)) return best;
+  // By Levinson and Durbin: each order from the one before.
+  std::array<double, kHighestOrder> coefficients{};
+  double variance = covariance[0];
+  double best_criterion = 0.0;  // of order 0, by how much others are better
+  for (std::size_t order = 1; order <= highest; ++order) {
+    double numerator = covariance[order];
+    for (std::size_t k = 1; k < order; ++k) {
+      numerator -= coefficients[k - 1] * covariance[order - k];
+    }
+    const double reflection = numerator / variance;
+    const std::array<double, kHighestOrder> last = coefficients;
+    for (std::size_t k = 1; k < order; ++k) {
+      coefficients[k - 1] -= reflection * last[order - k - 1];
+    }
+    coefficients[order - 1] = reflection;
+    variance *= 1 - reflection * reflection;
+    if (!(variance > 0)) break;
+    const double criterion = samples * std::log(variance / covariance[0]) +
+                             static_cast<double>(order) * std::log(samples);
+    if (criterion < best_criterion) {
+      best_criterion = criterion;
+      best.order = order;
+      best.coefficients = coefficients;
+      best.innovation_share = variance / covariance[0];
     }
   }
-  return all;
+  // Yule and Walker's process has the correlations that it was made from, to its order.
+  for (std::size_t lag = 0; lag <= best.order; ++lag) {
+    best.correlations[lag] = covariance[lag] / covariance[0];
+  }
+  return best;
 }
 
 double Autocorrelation::SquaredCorrelations() const {
-  double sum = 0.0;
-  for (const double correlation : AllCorrelations()) sum += correlation * correlation;
-  return order > 0 ? 2 * sum - 1 : 1.0;
+  const std::vector<double> all = AllCorrelations(*this);
+  return 2 * std::inner_product(all.begin(), all.end(), all.begin(), 0.0) - 1;
 }
 
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
   if (order == 0 || columns.cols() == 0) return columns.transpose() * columns;
-  // The columns filtered backwards by 1/φ, on to earlier times until they have decayed: a column a
-  // sample, so that those of one time lie side by side, the latest first.
-  const Eigen::Index memory = std::ssize(AllCorrelations());
+  // The columns filtered backwards by 1/φ until they have decayed: a column a sample, latest first.
+  const Eigen::Index memory = std::ssize(AllCorrelations(*this));
   Eigen::MatrixXd filtered = Eigen::MatrixXd::Zero(columns.cols(), columns.rows() + memory);
   filtered.leftCols(columns.rows()) = columns.transpose().rowwise().reverse();
   for (Eigen::Index i = 1; i < filtered.cols(); ++i) {
@@ -315,21 +306,15 @@ double EffectiveSamples(const Problem& problem, std::span<const double> theta) {
   return std::max(EffectiveSamples(*problem.data, {residual.data(), problem.size()}), least);
 }
 
-Evidence::Evidence(std::size_t samples, double effective)
-    : samples_(static_cast<double>(samples)), effective_(effective) {}
-
-double Evidence::Floored(double sum_of_squares) const {
-  return std::max(sum_of_squares, samples_ * kRoundingRms * kRoundingRms);
-}
-
 double Evidence::LikelihoodRatio(double held, double free) const {
-  return effective_ * std::log(Floored(held) / Floored(free));
+  return effective * std::log(Floored(held, samples) / Floored(free, samples));
 }
 
 double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
+  const auto n = static_cast<double>(samples);
   const auto k = static_cast<double>(parameters + 1);  // and the variance
-  return effective_ * std::log(Floored(sum_of_squares) / samples_) + 2 * k +
-         2 * k * (k + 1) / std::max(samples_ - k - 1, 1.0);
+  return effective * std::log(Floored(sum_of_squares, samples) / n) + 2 * k +
+         2 * k * (k + 1) / std::max(n - k - 1, 1.0);
 }
 
 std::vector<double> VariancesOfRecords(const ScaledRecords& data,
@@ -341,7 +326,7 @@ std::vector<double> VariancesOfRecords(const ScaledRecords& data,
     const double squares =
         Eigen::Map<const Eigen::VectorXd>(own.data(), std::ssize(own)).squaredNorm();
     all += squares;
-    variances.push_back(squares / static_cast<double>(CountedSamplesOf(record)));
+    variances.push_back(squares / CountedSamplesOf(record));
   }
   for (double& variance : variances) variance *= static_cast<double>(data.counted) / all;
   return variances;

@@ -14,12 +14,14 @@
 
 namespace mindahl::identification {
 
-/// Returns the strokes that are no shorter than `main_stroke` of the longest.
-std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
-
 /// Describes the residuals that count; differences are taken within a record. Effective samples,
 /// which need the noise, are left at 0.
 ResidualStatistics DescribeResiduals(std::span<const RecordFit> records);
+
+/// Returns the variance [N² or m²] of the white part of the residuals that count: 2/3 of the mean
+/// square of a residual's distance from the middle of its neighbours (Gasser, Sroka &
+/// Jennen-Steinmetz 1986).
+double WhiteVariance(const FitResult& result);
 
 /// Makes a one-way analysis of variance of a record's residuals over 20 parts of each main stroke.
 /// @param residual  of the record's samples, in any unit
@@ -33,10 +35,10 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
 struct Autocorrelation {
   static constexpr std::size_t kHighestOrder = 12;
 
-  std::size_t order = 0;                                 // p; 0 when the residuals are white
-  std::array<double, kHighestOrder> coefficients{};      // φ₁ … φ_p
-  std::array<double, kHighestOrder + 1> correlations{};  // ρ₀ … ρ_p, the sample's
-  double innovation_share = 1.0;                         // variance of ε over that of r
+  std::size_t order = 0;                                       // p; 0 when the residuals are white
+  std::array<double, kHighestOrder> coefficients{};            // φ₁ … φ_p
+  std::array<double, kHighestOrder + 1> correlations = {1.0};  // ρ₀ … ρ_p, the sample's
+  double innovation_share = 1.0;                               // variance of ε over that of r
 
   /// 1 + 2Σρ_k² over all lags: as many correlated residuals determine a variance as well as one
   /// independent one does (Bartlett 1946).
@@ -46,14 +48,9 @@ struct Autocorrelation {
   /// @param columns  J of one record, a row a sample in order of time
   /// @returns columns², relative error below 1e-8
   [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
-
- private:
-  /// Returns ρ₀, ρ₁ … of all lags, until they have decayed.
-  [[nodiscard]] std::vector<double> AllCorrelations() const;
 };
 
-/// @param residual  of every sample of the records, one after the other; those that do not count
-///                  are left out
+/// @param residual  of every sample of the records; those that do not count are left out
 Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
                                         std::span<const double> residual);
 
@@ -88,19 +85,16 @@ struct Noise {
                                         const Eigen::MatrixXd& jacobian) const;
 };
 
-/// Returns the effective number of samples of residuals, weighted or not, one record after the
-/// other: those that count, over the variance inflation from autocorrelation.
+/// Returns the samples that count, over the variance inflation from the residuals' autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
 
 /// Returns the same of a solution's residuals, no fewer than determine its free parameters.
 double EffectiveSamples(const Problem& problem, std::span<const double> theta);
 
 /// Compares two fits to the same samples; every comparison of fits uses it.
-class Evidence {
- public:
-  /// @param samples    that count
-  /// @param effective  as many independent ones as say the same, of what is compared
-  Evidence(std::size_t samples, double effective);
+struct Evidence {
+  std::size_t samples;  // that count
+  double effective;     // as many independent ones as say the same, of what is compared
 
   /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
   /// sums that are both no less than rounding errors leave.
@@ -110,12 +104,6 @@ class Evidence {
   /// unknown variance. The effective samples weigh the likelihood only: a wrong law leaves a
   /// handful of them, for which the small-sample term would outweigh any difference of two fits.
   [[nodiscard]] double Aicc(double sum_of_squares, std::size_t parameters) const;
-
- private:
-  [[nodiscard]] double Floored(double sum_of_squares) const;
-
-  double samples_;
-  double effective_;
 };
 
 /// Returns the mean squares of each record's residuals over that of all.

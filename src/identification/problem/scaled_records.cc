@@ -278,6 +278,15 @@ std::vector<Stroke> StrokesOf(std::span<const double> excitation,
   return strokes;
 }
 
+std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
+  std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+  const double longest = std::ranges::max(strokes, {}, &Stroke::length).length;
+  std::erase_if(strokes, [&](const Stroke& stroke) {
+    return !(stroke.length > 0) || stroke.length < thresholds.main_stroke * longest;
+  });
+  return strokes;
+}
+
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals) {
   std::vector<double> directions(excitation.size());

@@ -125,6 +125,9 @@ struct Stroke {
 std::vector<Stroke> StrokesOf(std::span<const double> excitation,
                               std::span<const std::size_t> reversals);
 
+/// Returns the strokes that are no shorter than `main_stroke` of the longest.
+std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
+
 /// Returns the direction of the stroke of each sample; a reversal is the last one's.
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals);
