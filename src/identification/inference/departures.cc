@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
@@ -13,15 +14,14 @@ namespace mindahl::identification {
 namespace {
 
 /// Derivative by time, by differences to both sides; 0 where time does not go on.
-/// @param turns  none looks beyond; one is the stroke's that ends there
+/// @param turns  ascending; none looks beyond: one is the stroke's that ends there
 std::vector<double> Derive(std::span<const double> values, std::span<const double> time,
                            std::span<const std::size_t> turns = {}) {
   std::vector<double> rate(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool turns_here = !turns.empty() && turns.front() == i;
-    if (turns_here) turns = turns.subspan(1);
+    const bool is_turn = i > 0 && std::ranges::binary_search(turns, i);
     const std::size_t before = i > 0 ? i - 1 : i;
-    const std::size_t after = i + 1 < values.size() && !(turns_here && i > 0) ? i + 1 : i;
+    const std::size_t after = i + 1 < values.size() && !is_turn ? i + 1 : i;
     const double step = time[after] - time[before];
     rate[i] = step > 0 ? (values[after] - values[before]) / step : 0.0;
   }
@@ -48,15 +48,13 @@ std::vector<double> DeriveTwice(std::span<const double> values, std::span<const 
 /// True if many readings of the displacement repeat the one before: it may be read less often than
 /// the force, and what is missing of the motion is no white noise.
 bool IsDisplacementHeld(const ScaledRecords& data, double often) {
-  std::size_t repeated = 0;
-  std::size_t all = 0;
+  double repeated = 0.0;
   for (const ScaledRecord& record : data.records) {
-    const std::vector<double>& displacement = record.displacement;
-    for (std::size_t i = 1; i < displacement.size(); ++i, ++all) {
-      if (displacement[i] == displacement[i - 1]) ++repeated;
-    }
+    const std::vector<double>& read = record.displacement;
+    repeated += std::inner_product(read.begin() + 1, read.end(), read.begin(), 0.0, std::plus(),
+                                   std::equal_to());
   }
-  return static_cast<double>(repeated) > often * static_cast<double>(all);
+  return repeated > often * static_cast<double>(data.samples() - data.records.size());
 }
 
 /// Sets the travel since the displacement was last read anew: what is repeated was read at the
@@ -98,25 +96,20 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   const bool tells_asymmetry = problem.is_virgin() &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies && !is_forced;
-  std::vector<double> contact(problem.size());  // its response
+  Eigen::VectorXd contact(static_cast<Eigen::Index>(problem.size()));  // its response
+  const std::span<double> of_contact(contact.data(), problem.size());
   std::vector<double> by_asymmetry(problem.size());
   ResponseColumns wanted;
   if (tells_asymmetry) wanted[TermId::kAsymmetry] = by_asymmetry;
-  Response(problem).Evaluate(theta, contact, wanted);
-  if (is_forced) {
-    const double scale = std::exp(LogScaleAt(problem, theta));
-    for (double& value : contact) value *= scale;
-  }
-  const Eigen::VectorXd predicted = is_forced ? Eigen::VectorXd() : Predict(problem, theta);
-  const std::span<const double> complete =
-      is_forced ? std::span<const double>(contact) : std::span(predicted.data(), problem.size());
-  double peak = 0.0;
-  for (const double value : contact) peak = std::max(peak, std::abs(value));
+  Response(problem).Evaluate(theta, of_contact, wanted);
+  if (is_forced) contact *= std::exp(LogScaleAt(problem, theta));
+  const Eigen::VectorXd complete = is_forced ? contact : Predict(problem, theta);
+  const double peak = contact.cwiseAbs().maxCoeff();
   const bool is_held = IsDisplacementHeld(data, held_readings);
   std::vector<Place> places(problem.size());
   for (const ScaledRecord& record : data.records) {
-    const std::span<const double> whole = record.Of(complete);
-    const std::span<const double> own = record.Of(std::span(contact));
+    const std::span<const double> whole = record.Of(std::span(complete.data(), problem.size()));
+    const std::span<const double> own = record.Of(of_contact);
     const std::span<const double> asymmetry = record.Of(std::span(by_asymmetry));
     const std::span<Place> of = record.Of(std::span(places));
     std::vector<double> time = record.time;
@@ -151,23 +144,28 @@ double Of(const Place& at) {
   return at.*kMember;
 }
 double Lag(const Place& at) { return -at.rate; }
+double LagByTime(const Place& at) { return Lag(at) * at.time; }
 double ForceOfContact(const Place& at) { return -at.force; }
 double Gap(const Place& at) { return -at.direction; }
+double ForceByLoad(const Place& at) { return at.force * at.load_change; }
+double SizeOfForce(const Place& at) { return std::abs(at.force); }
+double CubeOfForce(const Place& at) { return Cube(at.force); }
+double RootOfSpeed(const Place& at) {
+  return std::copysign(std::sqrt(std::abs(at.velocity)), at.velocity);
+}
+double ForceByTime(const Place& at) { return at.force * at.time; }
 double Curvature(const Place& at) { return Square(at.displacement); }
 double CubicCurvature(const Place& at) { return Cube(at.displacement); }
 double Position(const Place& at) { return at.force * at.displacement; }
 double PositionSquared(const Place& at) { return at.force * Square(at.displacement); }
-double PositionOfSize(const Place& at) { return std::abs(at.force) * at.displacement; }
-double PositionSquaredOfSize(const Place& at) {
-  return std::abs(at.force) * Square(at.displacement);
-}
+double PositionOfSize(const Place& at) { return SizeOfForce(at) * at.displacement; }
+double PositionSquaredOfSize(const Place& at) { return SizeOfForce(at) * Square(at.displacement); }
 
 /// A branch of another shape between the same ends.
 template <int kHalfWaves>
 double Bulge(const Place& at) {
   return at.change * std::sin(kHalfWaves * std::numbers::pi * at.progress);
 }
-constexpr std::array kBulges = {&Bulge<1>, &Bulge<2>, &Bulge<3>};
 
 /// Returns what a sensor loses that is limited beyond nine tenths of the largest force.
 double BeyondLimit(const Place& at) {
@@ -175,66 +173,45 @@ double BeyondLimit(const Place& at) {
   return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak), at.force);
 }
 
+// Code, group, columns of a force and of a displacement that answers.
 constexpr auto kDepartures = std::to_array<Departure>({
     // A force that is read late meets the displacement of later.
-    {.code = "channel_lag",
-     .group = "lag",
-     .columns = {Lag},
-     .of_displacement = {Of<&Place::rate>}},
-    {.code = "viscous_force", .group = "viscous", .columns = {Of<&Place::velocity>}},
-    {.code = "plateau_slope", .group = "plateau_slope", .columns = {Of<&Place::displacement>}},
-    {.code = "force_drift", .group = "force_drift", .columns = {Of<&Place::time>}},
-    {.code = "normal_load", .columns = {[](const Place& at) { return at.force * at.load_change; }}},
-    {.code = "shape_of_law",
-     .columns = {kBulges[0], kBulges[1], kBulges[2]},
-     .of_displacement = kBulges},
-    {.code = "guide_friction", .columns = {Of<&Place::direction>}},
-    {.code = "rig_in_series",
-     .group = "rig_stiffness",
-     .columns = {ForceOfContact},
-     .of_displacement = {Of<&Place::force>},
-     .moves = true},
-    {.code = "backlash",
-     .group = "backlash",
-     .columns = {Gap},
-     .of_displacement = {Of<&Place::direction>},
-     .moves = true},
-    {.code = "displacement_sensor",
-     .columns = {Curvature, CubicCurvature},
-     .of_displacement = {Curvature, CubicCurvature},
-     .moves = true},
-    {.code = "inertia", .group = "inertia", .columns = {Of<&Place::acceleration>}},
-    {.code = "unequal_directions",
-     .group = "asymmetry",
-     .columns = {[](const Place& at) { return std::abs(at.force); }, Of<&Place::asymmetry>}},
-    {.code = "running_in", .group = "slip_trend", .columns = {[](const Place& at) {
-                                                    return at.force * at.time;
-                                                  }}},
-    {.code = "force_saturates",
-     .columns = {BeyondLimit, [](const Place& at) { return Cube(at.force); }}},
+    {"channel_lag", "lag", {Lag}, {Of<&Place::rate>}},
+    {"viscous_force", "viscous", {Of<&Place::velocity>}},
+    {"plateau_slope", "plateau_slope", {Of<&Place::displacement>}},
+    {"force_drift", "force_drift", {Of<&Place::time>}},
+    {"normal_load", "", {ForceByLoad}},
+    {"shape_of_law", "", {Bulge<1>, Bulge<2>, Bulge<3>}, {Bulge<1>, Bulge<2>, Bulge<3>}},
+    {"guide_friction", "", {Of<&Place::direction>}},
+    {"rig_in_series", "rig_stiffness", {ForceOfContact}, {Of<&Place::force>}, /*moves=*/true},
+    {"backlash", "backlash", {Gap}, {Of<&Place::direction>}, /*moves=*/true},
+    {"displacement_sensor",
+     "",
+     {Curvature, CubicCurvature},
+     {Curvature, CubicCurvature},
+     /*moves=*/true},
+    {"inertia", "inertia", {Of<&Place::acceleration>}},
+    {"unequal_directions", "asymmetry", {SizeOfForce, Of<&Place::asymmetry>}},
+    {"running_in", "slip_trend", {ForceByTime}},
+    {"force_saturates", "", {BeyondLimit, CubeOfForce}},
     {.code = "slip_position",
      .group = "slip_position",
-     .term = "slip_slope",
-     .columns = {Position, PositionOfSize}},
-    {.code = "force_of_position", .columns = {Curvature, CubicCurvature}},
-    {.code = "smoothing", .columns = {Of<&Place::curvature>}},
+     .columns = {Position, PositionOfSize},
+     .term = "slip_slope"},
+    {"force_of_position", "", {Curvature, CubicCurvature}},
+    {"smoothing", "", {Of<&Place::curvature>}},
     // A turn is the first of its repeats, where nothing is missed.
-    {.code = "held_displacement", .columns = {Of<&Place::missed>}, .moves = true},
-    {.code = "displacement_drift",
-     .group = "displacement_drift",
-     .of_displacement = {Of<&Place::time>}},
+    {"held_displacement", "", {Of<&Place::missed>}, {}, /*moves=*/true},
+    {"displacement_drift", "displacement_drift", {}, {Of<&Place::time>}},
     {.code = "speed_power",
      .group = "slip_speed",
-     .term = "speed_exponent",
-     .columns = {[](const Place& at) {
-                   return std::copysign(std::sqrt(std::abs(at.velocity)), at.velocity);
-                 },
-                 Of<&Place::velocity>}},
+     .columns = {RootOfSpeed, Of<&Place::velocity>},
+     .term = "speed_exponent"},
     {.code = "slip_position_quadratic",
      .group = "slip_position_quadratic",
-     .term = "slip_slope",
-     .columns = {Position, PositionSquared, PositionOfSize, PositionSquaredOfSize}},
-    {.code = "clock_drift", .columns = {[](const Place& at) { return Lag(at) * at.time; }, Lag}},
+     .columns = {Position, PositionSquared, PositionOfSize, PositionSquaredOfSize},
+     .term = "slip_slope"},
+    {"clock_drift", "", {LagByTime, Lag}},
 });
 
 bool HasTermOf(const Problem& problem, const Departure& departure) {
@@ -250,8 +227,8 @@ bool HasTermOf(const Problem& problem, const Departure& departure) {
 void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<const Place> places,
                   DepartureColumn column, ScaledRecords& data, std::span<double> motion) {
   constexpr double kSmall = 1e-6;  // of the half range of the displacement
-  double largest = 0.0;
-  for (const double way : motion) largest = std::max(largest, std::abs(way));
+  const double largest =
+      Eigen::Map<const Eigen::VectorXd>(motion.data(), std::ssize(motion)).cwiseAbs().maxCoeff();
   if (largest == 0) return;
   const double step = kSmall / largest;
   for (std::size_t r = 0; r < data.records.size(); ++r) {

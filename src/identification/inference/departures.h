@@ -40,12 +40,10 @@ using DepartureColumn = double (*)(const Place&);
 struct Departure {
   std::string_view code;
   std::string_view group = {};  // of terms that fits it; empty where there is none
-  /// Names the term of a fit that is the same, if not as the group: it is not looked for where that
-  /// is fitted.
-  std::string_view term = {};
   std::array<DepartureColumn, 4> columns = {};
   std::array<DepartureColumn, 3> of_displacement = {};  // that answers an imposed force
-  bool moves = false;  // `columns` move the contact, which responds with its memory
+  bool moves = false;          // `columns` move the contact, which responds with its memory
+  std::string_view term = {};  // of a fit, that is the same: where it is not the group's name
 };
 
 /// An omitted term of a record: one of Departures(). Of one that noise may well have made only the
