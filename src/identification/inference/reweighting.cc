@@ -8,9 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <vector>
 
-#include "identification/inference/noise.h"
 #include "identification/solve/search.h"
 #include "loop/statistics.h"
 
@@ -40,33 +38,24 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
 
 namespace {
 
+constexpr double kLeastVariance = kRoundingRms * kRoundingRms;
 constexpr int kMostRounds = 50;
 constexpr double kSettled = 1e-4;   // rms change of the forces, over the noise: a valley has no end
 constexpr double kHarmless = 1e-2;  // likewise, of what goes on for ever: it matters not
 
 /// Samples that count less the free parameters, of which there are fewer.
-double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
-  return static_cast<double>(data.counted - parameters);
-}
-
-/// Standard deviation of normal values of mean 0, one or more, by the median of their magnitudes,
-/// which outliers do not move.
-double RobustScale(std::vector<double> residuals) {
-  return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
-                                          residuals.begin(), residuals.end(), 0.0);
+double DegreesOfFreedom(const Problem& problem) {
+  return static_cast<double>(problem.data->counted - problem.parameters.free().size());
 }
 
 /// The noise of plain residuals: known, or from their sum of squares.
-/// @param parameters  free ones
-Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
-                 std::size_t parameters) {
+Noise PlainNoise(const Problem& problem, const FitOptions& options, double sum_of_squares) {
   Noise noise;
-  noise.samples = data.counted;
+  noise.samples = problem.data->counted;
   noise.is_known = options.response_noise().has_value();
-  const double known = options.response_noise().value_or(0.0) / data.response_unit();
-  noise.variance =
-      std::max(noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(data, parameters),
-               kRoundingRms * kRoundingRms);
+  const double known = options.response_noise().value_or(0.0) / problem.data->response_unit();
+  noise.variance = std::max(
+      noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(problem), kLeastVariance);
   noise.force = std::sqrt(noise.variance);
   return noise;
 }
@@ -84,14 +73,13 @@ class Reweighting {
         drawn_(drawn),
         solution_(solution),
         counts_(static_cast<Eigen::Index>(problem.size())),
-        force_(counts_.size()),
+        force_(Predict(problem, solution.theta)),
         from_displacement_(Eigen::ArrayXd::Zero(counts_.size())),
-        degrees_(DegreesOfFreedom(data, problem.parameters.free().size())) {
+        degrees_(DegreesOfFreedom(problem)) {
     const std::span<double> counts(counts_.data(), problem.size());
     for (const ScaledRecord& record : data.records) {
       std::ranges::copy(record.counts, record.Of(counts).begin());
     }
-    force_ = Predict(problem_, solution_.theta);
   }
 
   /// Fits until the forces settle.
@@ -143,13 +131,12 @@ class Reweighting {
     SetWeights(weights_ * of_samples.sqrt());
     const double of_loss = of_samples.sum();
     if (!(slopes > 0 && of_loss > 0)) return false;
-    // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
-    // weight.
+    // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹; JᵀWJ is JᵀJ times the mean weight.
     const auto count = static_cast<double>(data_.counted);
     noise_.variance *=
         (influence_squares / degrees_) * (of_loss / count) / ((slopes / count) * (slopes / count));
     // Samples that are met to the last bit are still rounded.
-    noise_.variance = std::max(noise_.variance, kRoundingRms * kRoundingRms);
+    noise_.variance = std::max(noise_.variance, kLeastVariance);
     return true;
   }
 
@@ -182,13 +169,12 @@ class Reweighting {
           fraction_ * (errors_.array().square().rowwise().mean() - from_displacement_);
       drawn_at_ = force_;
     }
-    noise_ = PlainNoise(data_, options_, 0.0, 0);
+    noise_ = PlainNoise(problem_, options_, 0.0);
     if (!noise_.is_known) noise_.force = ForceNoise(loss);
-    const double of_force = std::max(noise_.force, kRoundingRms);
-    const Eigen::ArrayXd deviation = (of_force * of_force + from_displacement_).sqrt();
+    const Eigen::ArrayXd deviation = (noise_.force * noise_.force + from_displacement_).sqrt();
     unit_ = (counts_ > 0).select(deviation, std::numeric_limits<double>::infinity()).minCoeff();
     noise_.variance = unit_ * unit_;
-    if (drawn_ != nullptr) noise_.force_share = of_force / deviation;
+    if (drawn_ != nullptr) noise_.force_share = noise_.force / deviation;
     SetWeights(counts_ * unit_ / deviation);
   }
 
@@ -207,19 +193,22 @@ class Reweighting {
       for (Eigen::Index i = 0; i < residual.size(); ++i) {
         if (counts_[i] > 0) standardised.push_back(residual[i] * std::sqrt(precision[i]));
       }
-      return RobustScale(std::move(standardised)) - 1;
+      // By the median of their magnitudes, which outliers do not move.
+      return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
+                                              standardised.begin(), standardised.end(), 0.0) -
+             1;
     };
-    const double low = kRoundingRms * kRoundingRms;
-    const double high = std::max(low, 2 * residual.square().maxCoeff());
-    const double at_low = excess(low);
+    const double high = std::max(kLeastVariance, 2 * residual.square().maxCoeff());
+    const double at_low = excess(kLeastVariance);
     const double at_high = excess(high);
-    if (!(at_low > 0)) return std::sqrt(low);
+    if (!(at_low > 0)) return kRoundingRms;
     if (!(at_high < 0)) return std::sqrt(high);
     constexpr int kBits = 40;
     std::uintmax_t most = 60;
     const auto [from, to] = boost::math::tools::toms748_solve(
-        [&](double log_variance) { return excess(std::exp(log_variance)); }, std::log(low),
-        std::log(high), at_low, at_high, boost::math::tools::eps_tolerance<double>(kBits), most);
+        [&](double log_variance) { return excess(std::exp(log_variance)); },
+        std::log(kLeastVariance), std::log(high), at_low, at_high,
+        boost::math::tools::eps_tolerance<double>(kBits), most);
     return std::exp((from + to) / 4);
   }
 
@@ -253,7 +242,7 @@ class Reweighting {
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const loop::DrawnReadings* drawn, Solution& solution, Noise& noise) {
   if (options.loss == Loss::kNone && drawn == nullptr) {
-    noise = PlainNoise(data, options, solution.sum_of_squares, problem.parameters.free().size());
+    noise = PlainNoise(problem, options, solution.sum_of_squares);
     return true;
   }
   Reweighting fits(problem, data, options, drawn, solution);

@@ -25,8 +25,7 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
 ///   dominate; σ_F² where it is not known is what the residuals leave for it
 /// - a robust loss of the standardised residual, whose scale is the median absolute deviation:
 ///   ceres::Solve minimises it, and the weights ψ(z)/z at the minimum are those of the errors
-/// @param problem   of `data`
-/// @param data      its weights are written
+/// @param data      of the problem: its weights are written
 /// @param drawn     readings of the records; null where their displacements are exact
 /// @param solution  refitted from where it is
 /// @param noise     what the weights stand for
