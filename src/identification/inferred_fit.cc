@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,30 +19,24 @@
 namespace mindahl::identification {
 namespace {
 
-/// True if the residuals are rounding errors: they are no noise, are autocorrelated as they like,
-/// and nothing is to be learnt from what they look like.
-bool LeavesOnlyRounding(const Problem& problem, const Solution& solution) {
-  const auto count = static_cast<double>(problem.data->counted);
-  return std::sqrt(solution.sum_of_squares / count) < kOnlyRounding;
-}
-
 /// Estimates the noise and the statistics of the residuals.
-/// @param residual  weighted, of every sample
-void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
-                  std::span<const double> residual, Noise& noise, FitResult& result) {
-  if (!LeavesOnlyRounding(problem, solution)) {
-    noise.autocorrelation = EstimateAutocorrelation(problem.data->records, residual);
-    const bool any_differs = problem.data->records.size() > 1 && !noise.is_known;
-    if (any_differs) noise.of_records = VariancesOfRecords(*problem.data, residual);
-  }
+/// @param residual     weighted, of every sample
+/// @param is_rounding  are they rounding errors, autocorrelated as they like?
+void MeasureNoise(const Problem& problem, std::span<const double> residual, bool is_rounding,
+                  const Thresholds& thresholds, Noise& noise, FitResult& result) {
+  const ScaledRecords& data = *problem.data;
   double widening = 1.0;
-  for (std::size_t r = 0; r < result.records.size(); ++r) {
-    const ScaledRecord& record = problem.data->records[r];
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
     ResidualStructure& structure = result.records[r].structure;
-    structure = DescribeStructure(record, record.Of(residual), attempt.options.thresholds);
+    structure = DescribeStructure(data.records[r], data.records[r].Of(residual), thresholds);
     widening = std::max(widening, structure.Widening());
   }
-  if (!LeavesOnlyRounding(problem, solution)) noise.repeating = widening;
+  if (!is_rounding) {
+    noise.autocorrelation = EstimateAutocorrelation(data.records, residual);
+    noise.repeating = widening;
+    const bool any_differs = data.records.size() > 1 && !noise.is_known;
+    if (any_differs) noise.of_records = VariancesOfRecords(data, residual);
+  }
   result.residuals = DescribeResiduals(result.records);
   result.residuals.effective_samples = noise.effective_samples();
   result.degrees_of_freedom = noise.degrees_of_freedom(problem.parameters.free().size());
@@ -52,38 +44,18 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
 
 /// Adequacy, and intervals that cover what its causes would change.
 /// @param is_limited  did the search end at a limit of its own?
-void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptions& options,
-                        FitResult& result) {
+void ConsiderDepartures(const Estimates& fitted, bool is_limited, FitResult& result) {
   const Problem& problem = fitted.problem();
-  const Solution& solution = fitted.solution();
-  const Thresholds& thresholds = options.thresholds;
-  if (LeavesOnlyRounding(problem, solution)) {
-    result.adequacy.tried = 1;
-    GradeUse(thresholds, result);
-    return;
-  }
-  AdequacyTest test = TestAdequacy(fitted, thresholds);
+  const Thresholds& thresholds = fitted.thresholds();
+  const AdequacyTest test = TestAdequacy(fitted);
   const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   GradeUse(thresholds, result);
   if (!MayOmitTerms(result.adequacy, thresholds)) return;
-  WidenByOmittedTerms(problem, solution, test, causes,
-                      StudentQuantile(test.degrees_of_freedom, options.confidence),
+  WidenByOmittedTerms(problem, fitted.solution(), test, causes,
+                      StudentQuantile(test.degrees_of_freedom, result.confidence),
                       result.parameters);
-  if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
-  result.parameters = CoverDiscrepancy(fitted, thresholds, result);
-}
-
-/// Standard errors, intervals and correlations of the parabola.
-void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& result) {
-  const auto& reported = problem.parameters.reported();
-  for (std::size_t k = 0; k < reported.size(); ++k) {
-    estimates.Fill(reported[k], result.parameters[k]);
-    for (const std::size_t other : reported) {
-      result.correlation.push_back(estimates.Correlation(reported[k], other));
-    }
-  }
-  Append(result.findings, FindUndetermined(estimates));
+  if (result.adequacy.verdict != AdequacyVerdict::kAdequate) CoverDiscrepancy(fitted, result);
 }
 
 }  // namespace
@@ -92,27 +64,38 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const FitOptions& options = attempt.options;
   const Problem& problem = solved.best.problem;
   const Solution& solution = solved.solution();
-  Noise& noise = solved.noise;
   const Thresholds& thresholds = options.thresholds;
-  const bool is_judged = result.depth >= Depth::kIntervals;
-  const bool is_tested = result.depth >= Depth::kFull;
+  // Rounding errors are no noise: nothing is to be learnt from what they look like.
+  const double rms = std::sqrt(solution.sum_of_squares / static_cast<double>(attempt.data.counted));
+  const bool is_rounding = rms < 10 * kRoundingRms;
   Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
-  MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  const Estimates fitted(problem, solution, noise, options, std::move(at));
-  FillErrors(problem, fitted, result);
-  result.parameters = WithProfiles(fitted, result, options);
-  if (is_tested) {
-    Append(result.findings, IncludeCompliantRig(fitted, options, result.parameters));
+  MeasureNoise(problem, {at.residual.data(), problem.size()}, is_rounding, thresholds, solved.noise,
+               result);
+  const Estimates fitted(problem, solution, solved.noise, options, std::move(at));
+  const std::vector<std::size_t>& reported = problem.parameters.reported();
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    fitted.Fill(reported[k], result.parameters[k]);
+    for (const std::size_t other : reported) {
+      result.correlation.push_back(fitted.Correlation(reported[k], other));
+    }
+  }
+  Append(result.findings, FindUndetermined(fitted));
+  ProfileIntervals(fitted, result);
+  if (result.depth >= Depth::kFull) {
+    Append(result.findings, IncludeCompliantRig(fitted, result.parameters));
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, result.parameters);
   if (!problem.data->is_forced()) CoverSteps(attempt.prepared, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
-  if (is_judged) {
-    ConsiderDepartures(fitted, limit.has_value(), options, result);
+  if (result.depth >= Depth::kIntervals && is_rounding) {
+    result.adequacy.tried = 1;
+    GradeUse(thresholds, result);
+  } else if (result.depth >= Depth::kIntervals) {
+    ConsiderDepartures(fitted, limit.has_value(), result);
   }
-  result.parameters[kSlipForce] = KeepAboveCarriedForce(problem.parameters, result);
-  Append(result.findings, FindOnParameters(fitted, attempt.prepared, options, result));
+  KeepAboveCarriedForce(problem.parameters, result);
+  Append(result.findings, FindOnParameters(fitted, attempt.prepared, result));
   WithdrawIfInadequate(thresholds, result);
   Append(result.findings, FindWideIntervals(result, thresholds));
   Judge(result.parameters, result.findings);

@@ -61,7 +61,7 @@ std::optional<Ends> ShapeBesideRig(const Thresholds& thresholds, const Record& r
   const Estimates estimates = testing::EstimatesOf(stages, best, noise);
   ParameterEstimates parameters = ValuesOf(stages.problem, best);
   parameters[kShape].upper95 = parameters[kShape].value;
-  if (!IncludeCompliantRig(estimates, stages.options, parameters)) return {};
+  if (!IncludeCompliantRig(estimates, parameters)) return {};
   return Ends{.lower = parameters[kShape].lower95, .upper = parameters[kShape].upper95};
 }
 

@@ -1,17 +1,13 @@
 #include "identification/diagnosis/diagnosis.h"
 
-#include <Eigen/Core>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "core/probability.h"
 #include "loop/statistics.h"
-#include "mindahl/identification/fit_result.h"
-#include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -43,30 +39,31 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
 
 /// Contacts whose history before the record is not known:
 /// - a Masing fit short of slip that puts the unloaded position near a stroke's end and far from
-///   the first sample: the first branch then probably began at an unrecorded reversal, which makes
-///   it the virgin curve scaled by two, almost indistinguishable from it;
-/// - records that turn less than twice and do not start where the contact is unloaded: the branch
-///   that they start on began before them, and how far it has come is not known.
-std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
-                                       const FitResult& result, const Thresholds& thresholds) {
+///   the first sample: the first branch, then probably from an unrecorded reversal, is the virgin
+///   curve scaled by two;
+/// - records that turn less than twice and do not start where the contact is unloaded.
+std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult& result) {
   constexpr double kNearEnd = 0.2;  // [half range]
   constexpr double kFar = 0.5;
+  const Problem& problem = fitted.problem();
+  const Thresholds& thresholds = fitted.thresholds();
   const bool is_virgin_masing =
       problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
+  Finding finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
   bool is_told = false;  // by one record
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     const std::size_t origin = problem.parameters.PositionOfOrigin(r);
-    const double unloaded = solution.theta[origin];
+    const double unloaded = fitted.solution().theta[origin];
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
     const double half = (highest - lowest) / 2;
     const double inside = std::min(unloaded - lowest, highest - unloaded);
     const double away = std::abs(record.excitation().front() - unloaded);
     if (is_virgin_masing && inside < kNearEnd * half && away > kFar * half &&
         !loop::HasSlipped(result.records[r].facts)) {
-      return Finding{
-          .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
+      finding.kind = "elsewhere";
+      return finding;
     }
     const bool starts_unloaded = problem.is_virgin() && !problem.parameters[origin].assumed &&
                                  away <= thresholds.starts_unloaded * half;
@@ -75,13 +72,12 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
     is_assumed = is_assumed || problem.parameters[origin].assumed;
   }
   if (is_told) return std::nullopt;
-  // A stroke that was cut has the slope of where it was, not of the contact at rest.
   if (is_assumed) {
-    return Finding{.code = "unknown_past",
-                   .parameters = {"sigma", "alpha", "slip_force"},
-                   .kind = "one_stroke"};
+    // A stroke that was cut has the slope of where it was, not of the contact at rest.
+    finding.parameters = {"sigma", "alpha", "slip_force"};
+    finding.kind = "one_stroke";
   }
-  return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
+  return finding;
 }
 
 /// An asymmetry of a contact that had been cycled before the records, and does not slip as a whole
@@ -104,9 +100,8 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
   return std::nullopt;
 }
 
-/// A force that stands at its largest or least reading, to the last digit, in a twentieth of the
-/// samples, though it has noise, the law leaves some, and no other reading repeats. That is the
-/// sensor's limit and not the contact's.
+/// A force that stands at its largest or least reading in a twentieth of the samples, though it has
+/// noise, the law leaves some, and no other reading repeats: at its sensor's limit.
 std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
                                         const FitResult& result) {
   constexpr double kOften = 0.05;  // of the samples
@@ -136,8 +131,7 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
   return std::nullopt;
 }
 
-/// Samples that come back to the same few places of the loop in every cycle, however many they are:
-/// what lies between them, the turning points too, no cycle shows.
+/// Samples of few places of the loop, the same in every cycle: what lies between, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
   std::size_t places = 0;
   std::size_t samples = 0;
@@ -169,56 +163,43 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                  .kind = "few_places"};
 }
 
-/// Returns how far the records' own estimate of a parameter lies from what is known of it, over the
-/// standard deviation of that distance: by a step to first order without that knowledge.
-/// @param own          derivative of the weighted residuals by the parameter
-/// @param others       likewise by the free ones
-/// @param off          of the parameter from what is known
-/// @param uncertainty  of that
-double DistanceOfOwn(const Problem& problem, Eigen::VectorXd own, const Eigen::MatrixXd& others,
-                     const Eigen::VectorXd& residual, double off, double uncertainty) {
-  // The columns of the other parameters are projected out.
-  if (others.cols() > 0) own -= others * others.colPivHouseholderQr().solve(own);
-  const double information = own.squaredNorm();
-  const double step = -own.dot(residual) / information;
-  const Eigen::VectorXd left = residual + own * step;
-  const double effective = EffectiveSamples(*problem.data, {left.data(), problem.size()});
-  const double error = left.norm() / std::sqrt(effective * information);
-  return std::abs(off + step) / std::hypot(error, uncertainty);
-}
-
 /// Parameters whose prior lies far from the records' own estimate; where the model does not
-/// describe the records, also those that the user holds elsewhere.
-std::vector<Finding> FindContradicted(const Estimates& fitted, const FitOptions& options,
-                                      const FitResult& result) {
+/// describe the records, also those that the user holds elsewhere. The distance is that of a step
+/// to first order without that knowledge, over its standard deviation.
+std::vector<Finding> FindContradicted(const Estimates& fitted, const FitResult& result) {
+  const FitOptions& options = fitted.options();
   const bool is_described = result.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (options.priors.empty() && (options.fixed.empty() || is_described)) return {};
   const Problem& problem = fitted.problem();
   const std::vector<double>& theta = fitted.solution().theta;
   const std::vector<std::size_t>& free = problem.parameters.free();
   const Linearization at = WithPriors(problem, theta, fitted.linearization());
-  Eigen::Index row = fitted.residual().size() - 1;
+  Eigen::Index row = fitted.linearization().residual.size() - 1;
   std::vector<Finding> findings;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
     const std::string name = problem.parameters.NameOf(p);
     const bool is_held = parameter.fixed && !is_described && options.fixed.contains(name);
     if (!is_held && (parameter.fixed || !parameter.has_prior())) continue;
+    Eigen::VectorXd own = LinearizeAt(problem, theta, {&p, 1}).jacobian.col(0);
+    own.conservativeResizeLike(Eigen::VectorXd::Zero(at.residual.size()));
     Eigen::MatrixXd others = at.jacobian;
-    double distance = 0.0;
-    if (is_held) {
-      Eigen::VectorXd own = LinearizeAt(problem, theta, {&p, 1}).jacobian.col(0);
-      own.conservativeResizeLike(Eigen::VectorXd::Zero(others.rows()));
-      distance = DistanceOfOwn(problem, own, others, at.residual, 0.0, 0.0);
-    } else {
-      const auto place = std::ranges::find(free, p) - free.begin();
-      Eigen::VectorXd own = others.col(place);
-      own[++row] = 0.0;
-      others.row(row).setZero();
-      others.col(place).setZero();
-      distance = DistanceOfOwn(problem, own, others, at.residual, theta[p] - parameter.prior_theta,
-                               problem.data->prior_noise / parameter.prior_root_weight);
+    double off = 0.0;
+    double uncertainty = 0.0;
+    if (!is_held) {
+      others.row(++row).setZero();
+      others.col(std::ranges::find(free, p) - free.begin()).setZero();
+      off = theta[p] - parameter.prior_theta;
+      uncertainty = problem.data->prior_noise / parameter.prior_root_weight;
     }
+    // The columns of the other parameters are projected out.
+    if (others.cols() > 0) own -= others * others.colPivHouseholderQr().solve(own);
+    const double information = own.squaredNorm();
+    const double step = -own.dot(at.residual) / information;
+    const Eigen::VectorXd left = at.residual + own * step;
+    const double effective = EffectiveSamples(*problem.data, {left.data(), problem.size()});
+    const double error = left.norm() / std::sqrt(effective * information);
+    const double distance = std::abs(off + step) / std::hypot(error, uncertainty);
     if (!(distance > options.thresholds.prior_distance)) continue;
     findings.push_back({.code = "prior_contradicted",
                         .parameters = {name},
@@ -237,11 +218,11 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
     const auto append = [&](Finding finding) {
       findings.push_back(OfRecord(r, records.size(), std::move(finding)));
     };
-    if (const loop::ReversalGate& gate = record.gate; !gate.certain) {
-      // Counted as the report does, after smoothing.
+    // Counted as the report does, after smoothing.
+    const auto count = static_cast<double>(record.reversals.size());
+    if (!record.gate.certain) {
       append({.code = "reversals_uncertain",
-              .numbers = {{"count", static_cast<double>(record.reversals.size())},
-                          {"gate", gate.gate}}});
+              .numbers = {{"count", count}, {"gate", record.gate.gate}}});
     }
     if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
@@ -315,9 +296,7 @@ std::optional<Finding> FindUndetermined(const Estimates& fitted) {
 std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   std::vector<Finding> findings;
   const ParameterEstimate& slip_force = *result.Find("slip_force");
-  if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
-    return findings;
-  }
+  if (!slip_force.lower95 || slip_force.upper95) return findings;
   findings.push_back({.code = "bounded_below",
                       .parameters = {"slip_force"},
                       .kind = loop::Slides(result.WidestRecord().facts) ? "slides" : ""});
@@ -331,16 +310,13 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   std::vector<Finding> findings;
-  // The verdict is that of a 95 % interval, whatever confidence is requested. The model discrepancy
-  // does not scale with the confidence.
+  // The verdict is that of a 95 % interval; the model discrepancy does not scale with confidence.
   const double quantiles = StudentQuantile(result.degrees_of_freedom, 0.95) /
                            StudentQuantile(result.degrees_of_freedom, result.confidence);
   const bool hides = HidesInSpring(result);
   for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
     const ParameterEstimate& estimate = *result.Find(name);
-    if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
-      continue;
-    }
+    if (!estimate.lower95 || !estimate.upper95) continue;
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
     const double to_95 = estimate.includes_discrepancy ? 1.0 : quantiles;
@@ -355,7 +331,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
             : !(lower > 0) || std::pow(ratio, to_95) > thresholds.widest_ratio;
     const bool is_said = std::ranges::any_of(result.findings, [&](const Finding& finding) {
       return finding.code.row().verdict == Identifiability::kNotIdentifiable &&
-             std::ranges::find(finding.parameters, name) != finding.parameters.end();
+             std::ranges::count(finding.parameters, name) > 0;
     });
     if (!wide || is_said) continue;
     findings.push_back({.code = "not_identifiable",
@@ -370,13 +346,12 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
-    const bool is_limit_of_law = parameter.term->positive || p == kShape;
     const BoundSide side = SideOf(parameter, solution.theta[p]);
-    if (is_limit_of_law || !IsSearchLimit(parameter, side)) continue;
+    if (parameter.term->positive || p == kShape || !IsSearchLimit(parameter, side)) continue;
     Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
     for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
-      if (problem.parameters[law].fixed) continue;
-      finding.parameters.push_back(problem.parameters.NameOf(law));
+      const bool is_fixed = problem.parameters[law].fixed;
+      if (!is_fixed) finding.parameters.push_back(problem.parameters.NameOf(law));
     }
     return finding;
   }
@@ -384,19 +359,17 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
 }
 
 std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
-                                      const FitOptions& options, const FitResult& result) {
+                                      const FitResult& result) {
   const Problem& problem = fitted.problem();
-  const Thresholds& thresholds = options.thresholds;
+  const Thresholds& thresholds = fitted.thresholds();
   std::vector<Finding> findings;
   if (result.depth >= Depth::kIntervals) {
-    if (!options.initial_state) {
-      Append(findings, FindUnknownPast(problem, fitted.solution(), result, thresholds));
-    }
+    if (!fitted.options().initial_state) Append(findings, FindUnknownPast(fitted, result));
     Append(findings, FindFewPlaces(problem, thresholds));
     if (!problem.data->is_forced()) Append(findings, FindForceAtLimit(records, result));
   }
   Append(findings, FindUntoldAsymmetry(result, thresholds));
-  Append(findings, FindContradicted(fitted, options, result));
+  Append(findings, FindContradicted(fitted, result));
   Append(findings, FindOpenSlipForce(result));
   return findings;
 }

@@ -11,7 +11,6 @@
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/finding.h"
-#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/record.h"
@@ -29,13 +28,11 @@ inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
   std::ranges::move(more, std::back_inserter(findings));
 }
 
-/// Reversals that are not certain, and that no cycle is closed: whatever is fitted. Numbers of a
-/// record count from 1.
+/// Reversals that are not certain, and that no cycle is closed. Records count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 
 /// `rows_missing` where time jumps by a quarter of a cycle or more, and the displacement with it:
-/// turns in it are not seen.
-/// Numbers: gap and from, in seconds, and record of several.
+/// turns in it are not seen. Numbers: gap and from [s], and record of several.
 std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records);
 
 /// `load_varies`, within a record, which the law follows or does not know. Numbers: variation, the
@@ -48,8 +45,7 @@ std::optional<Finding> FindUndetermined(const Estimates& fitted);
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 
-/// Closed intervals too wide to call a parameter known, of those that no other finding calls
-/// unknown.
+/// Closed intervals too wide to call a parameter known, where no other finding calls it unknown.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
@@ -60,7 +56,7 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
 /// Finds what else leaves a parameter open, or contradicts it: an unknown past, few places of the
 /// loop, a force at its sensor's limit, an asymmetry below slip, a prior, FindOpenSlipForce().
 std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
-                                      const FitOptions& options, const FitResult& result);
+                                      const FitResult& result);
 
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);

@@ -1,13 +1,8 @@
 #include "identification/diagnosis/hull.h"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "core/extremes.h"
 #include "core/probability.h"
@@ -31,26 +26,22 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters) {
   }
 }
 
-std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
+std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
                                            ParameterEstimates& parameters) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
-  const Thresholds& thresholds = options.thresholds;
   const ParameterEstimate& shape = parameters[kShape];
   // If the contact is Mindlin's and the rig is rigid, 1/3 exceeds the upper end of the interval
-  // with a probability of 1/40, and exceeds it by this margin with one of 1/600. Without the
-  // margin, the intervals would cover the truth in more than 97 % of such loops.
+  // with a probability of 1/40, and exceeds it by this margin with one of 1/600.
   constexpr double kFurther = 0.5;  // of the distance from the value to the end
-  // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
-  // is.
+  // The law of a load that varies or of an imposed force has no rig; a prior says what α is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
-      problem.parameters[kShape].has_prior() || shape.status == ParameterStatus::kFixed ||
-      !shape.upper95 ||
+      problem.parameters[kShape].has_prior() || !shape.upper95 ||
       !(*shape.upper95 + kFurther * (*shape.upper95 - shape.value) < kMindlinShapeExponent)) {
     return std::nullopt;
   }
   constexpr double kStiffer = 0.1;  // of the compliance is the contact's
-  FitOptions with_rig = options;
+  FitOptions with_rig = fitted.options();
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlinShapeExponent;
   with_rig.start.clear();
@@ -65,12 +56,12 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOpt
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);
-  if (!solution.converged || !(loss < thresholds.indistinguishable)) return std::nullopt;
+  if (!solution.converged || !(loss < fitted.thresholds().indistinguishable)) return std::nullopt;
   const Parameters& of_rig = sprung.problem.parameters;
   const models::SeriesSpring rig = of_rig.RigAt(solution.theta);
   const models::BranchLaw law = of_rig.LawAt(solution.theta);
-  if (law.tangential_stiffness < thresholds.rigid_beside_rig * rig.stiffness) {
-    const Estimates beside_rig(sprung.problem, solution, fitted.noise(), options,
+  if (law.tangential_stiffness < fitted.thresholds().rigid_beside_rig * rig.stiffness) {
+    const Estimates beside_rig(sprung.problem, solution, fitted.noise(), fitted.options(),
                                LinearizeAt(sprung.problem, solution.theta, of_rig.free()));
     ParameterEstimates others = ValuesOf(sprung.problem, solution);
     for (std::size_t k = 0; k < others.size(); ++k) {
@@ -128,69 +119,70 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
 
 namespace {
 
-/// Half the width of the interval in which a further cycle of the same loop has its half gap:
-/// Student's for so few cycles.
-double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
-  const auto cycles = static_cast<double>(facts.steady_cycles);
-  if (!facts.half_gap_standard_deviation || cycles < 3) return 0.0;
-  return StudentQuantile(cycles - 1, confidence) * *facts.half_gap_standard_deviation *
-         std::sqrt(1 + 1 / cycles);
+/// Half the width of Student's interval of the half gap of a further cycle, at the records' mean
+/// load.
+double ScatterOfCycles(const FitResult& result) {
+  const RecordFit& widest = result.WidestRecord();
+  const auto cycles = static_cast<double>(widest.facts.steady_cycles);
+  if (!widest.facts.half_gap_standard_deviation || cycles < 3) return 0.0;
+  return StudentQuantile(cycles - 1, result.confidence) *
+         *widest.facts.half_gap_standard_deviation * std::sqrt(1 + 1 / cycles) / widest.load_ratio;
 }
 
 /// The stiffness of the record after its reversals over that of the model: slopes of least squares,
 /// each stroke with an intercept of its own, where the model's force has changed by less than a
 /// fraction of what it changes by in the stroke.
 /// @returns nothing where the strokes have fewer than two samples there
-std::optional<double> RatioOfStiffness(const Estimates& estimates, const Thresholds& thresholds,
-                                       double window) {
+std::optional<double> RatioOfStiffness(const Estimates& estimates, double window) {
   constexpr double kFewestOfAStroke = 2;  // samples, for a chord
-  const ScaledRecords& data = *estimates.problem().data;
   double measured = 0.0;
   double model = 0.0;
   double strokes = 0.0;
   double samples = 0.0;
-  const std::span<const double> residuals(estimates.residual().data(), estimates.problem().size());
-  for (const ScaledRecord& record : data.records) {
-    const auto force_of_model = [&](std::size_t i) {
-      return record.force[i] + record.Of(residuals)[i] / record.root_weight[i];
-    };
-    for (const Stroke& stroke : MainStrokes(record, thresholds)) {
-      std::vector<std::size_t> counted;
+  const Eigen::ArrayXd residuals = estimates.linearization().residual;
+  const auto array_of = [](const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values));
+  };
+  for (const ScaledRecord& record : estimates.problem().data->records) {
+    const auto first_sample = static_cast<Eigen::Index>(record.first);
+    const Eigen::ArrayXd displacement = array_of(record.displacement);
+    const Eigen::ArrayXd force = array_of(record.force);
+    const Eigen::ArrayXd of_model =
+        force + residuals.segment(first_sample, force.size()) / array_of(record.root_weight);
+    for (const Stroke& stroke : MainStrokes(record, estimates.thresholds())) {
+      std::vector<Eigen::Index> near;
       for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        if (record.root_weight[i] > 0) counted.push_back(i);
+        if (record.root_weight[i] > 0) near.push_back(static_cast<Eigen::Index>(i));
       }
-      if (counted.empty()) continue;
-      const double first = force_of_model(counted.front());
-      const double limit = window * std::abs(force_of_model(counted.back()) - first);
-      std::vector<double> near;  // displacement, force and the model's of a sample
-      for (const std::size_t i : counted) {
-        const double force = force_of_model(i);
-        if (std::abs(force - first) > limit) break;
-        // The motion turned anywhere about its outermost sample.
-        if (i == stroke.begin) continue;
-        near.insert(near.end(), {record.displacement[i], record.force[i], force});
-      }
+      if (near.empty()) continue;
+      const double first = of_model[near.front()];
+      const double limit = window * std::abs(of_model[near.back()] - first);
+      near.erase(std::ranges::find_if(
+                     near, [&](Eigen::Index i) { return std::abs(of_model[i] - first) > limit; }),
+                 near.end());
+      // The motion turned anywhere about its outermost sample.
+      std::erase(near, static_cast<Eigen::Index>(stroke.begin));
       ++strokes;
       if (near.empty()) continue;
-      const Eigen::Map<const Eigen::Array3Xd> at(near.data(), 3, std::ssize(near) / 3);
-      const Eigen::ArrayXd places = at.row(0).transpose() - at.row(0).mean();
-      measured += (places * at.row(1).transpose()).sum();
-      model += (places * at.row(2).transpose()).sum();
-      samples += static_cast<double>(at.cols());
+      const auto at = displacement(near);
+      const Eigen::ArrayXd places = at - at.mean();
+      measured += (places * force(near)).sum();
+      model += (places * of_model(near)).sum();
+      samples += static_cast<double>(near.size());
     }
   }
   const double ratio = measured / model;  // of slopes at the same points
-  const bool is_known = samples >= kFewestOfAStroke * strokes && ratio > 0 && std::isfinite(ratio);
-  return is_known ? std::optional(ratio) : std::nullopt;
+  if (samples < kFewestOfAStroke * strokes || !(ratio > 0 && std::isfinite(ratio))) return {};
+  return ratio;
 }
 
 /// Returns the least and greatest of the same over an eighth, a quarter and a half of the change,
 /// and at the reversal itself: by the parabola through these, and as much again within the
 /// narrowest as is seen of it. 1 where none is known.
-Extremes RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresholds) {
+Extremes RatiosOfStiffness(const Estimates& estimates) {
   std::vector<double> ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
-    const std::optional<double> ratio = RatioOfStiffness(estimates, thresholds, window);
+    const std::optional<double> ratio = RatioOfStiffness(estimates, window);
     if (ratio) ratios.push_back(*ratio);
   }
   if (ratios.empty()) return {1.0, 1.0};
@@ -203,66 +195,52 @@ Extremes RatiosOfStiffness(const Estimates& estimates, const Thresholds& thresho
 
 }  // namespace
 
-ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
-                                    const FitResult& result) {
-  ParameterEstimates parameters = result.parameters;
-  ParameterEstimate& slip_force = parameters[kSlipForce];
-  ParameterEstimate& stiffness = parameters[kStiffness];
+void CoverDiscrepancy(const Estimates& fitted, FitResult& result) {
+  ParameterEstimate& stiffness = result.parameters[kStiffness];
   if (stiffness.lower95 && stiffness.upper95 && !fitted.problem().data->is_forced()) {
-    const auto [least, greatest] = RatiosOfStiffness(fitted, thresholds);
+    const auto [least, greatest] = RatiosOfStiffness(fitted);
     Include(stiffness,
             {.lower = least * *stiffness.lower95, .upper = greatest * *stiffness.upper95});
   }
-  for (ParameterEstimate& estimate : parameters) {
-    const bool is_closed = estimate.lower95 && estimate.upper95;
-    estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed;
+  for (ParameterEstimate& estimate : result.parameters) {
+    estimate.includes_discrepancy = estimate.lower95 && estimate.upper95;
   }
-  const loop::LoopFacts& facts = result.WidestRecord().facts;
-  const double load_ratio = result.WidestRecord().load_ratio;
+  const RecordFit& widest = result.WidestRecord();
   const std::optional<double> half_gap = result.MeasuredHalfGap();
-  const bool is_free = slip_force.status != ParameterStatus::kFixed;
-  if (!is_free || !half_gap || !loop::HasSlipped(facts)) return parameters;
-
-  const double margin =
-      std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, result.adequacy.misfit);
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  const bool is_held = slip_force.status == ParameterStatus::kFixed;
+  if (is_held || !half_gap || !loop::HasSlipped(widest.facts)) return;
+  const double margin = std::hypot(ScatterOfCycles(result), result.adequacy.misfit);
   // The value itself is no better known than the gap.
   const double least = std::min(*half_gap, slip_force.value) - margin;
   const double most =
-      std::max({*half_gap, facts.peak_force / load_ratio, slip_force.value}) + margin;
+      std::max({*half_gap, widest.facts.peak_force / widest.load_ratio, slip_force.value}) + margin;
   const auto [lower, upper] =
       std::minmax({slip_force.value, *half_gap - margin, *half_gap + margin,
                    std::clamp(slip_force.lower95.value_or(0.0), least, most),
                    std::clamp(slip_force.upper95.value_or(most), least, most)});
   SetInterval(slip_force, {.lower = std::max(lower, 0.0), .upper = upper});
   slip_force.includes_discrepancy = true;
-  return parameters;
 }
 
-ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResult& result) {
-  ParameterEstimate slip_force = result.parameters[kSlipForce];
-  const bool is_open = slip_force.lower95 && !slip_force.upper95 &&
-                       slip_force.status != ParameterStatus::kFixed && !result.is_scaled_by_load();
-  if (!is_open) return slip_force;
+void KeepAboveCarriedForce(const Parameters& fitted, FitResult& result) {
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  if (!slip_force.lower95 || slip_force.upper95 || result.is_scaled_by_load()) return;
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   if (result.depth >= Depth::kIntervals && half_gap &&
       result.adequacy.verdict != AdequacyVerdict::kAdequate) {
     // A force that is not modelled may be a part of T*, but not of the half gap.
-    const RecordFit& widest = result.WidestRecord();
-    const double scatter = ScatterOfCycles(widest.facts, result.confidence) / widest.load_ratio;
-    SetInterval(slip_force, {.lower = std::max(*half_gap - scatter, 0.0)});
-    return slip_force;
+    slip_force.lower95 = std::max(*half_gap - ScatterOfCycles(result), 0.0);
+    return;
   }
   // A fitted force in addition to the contact's may be a part of T*.
   const bool has_added_force = std::ranges::any_of(
       fitted.free(), [&](std::size_t p) { return fitted[p].term->adds_force(); });
-  if (has_added_force) return slip_force;
+  if (has_added_force) return;
   const bool is_forced = result.response == loop::Channel::kDisplacement;
   // Half the distance between the medians of a few ends is known to about half its white noise.
   const double carried = result.PeakForce() - (is_forced ? 0.0 : std::sqrt(WhiteVariance(result)));
-  if (carried < slip_force.value && *slip_force.lower95 < carried) {
-    SetInterval(slip_force, {.lower = carried});
-  }
-  return slip_force;
+  if (carried < slip_force.value) slip_force.lower95 = std::max(*slip_force.lower95, carried);
 }
 
 }  // namespace mindahl::identification

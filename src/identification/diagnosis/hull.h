@@ -6,21 +6,17 @@
 #include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
-#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/response.h"
 
 /// Extends the interval of a parameter beyond that of noise alone: by other laws that the record
 /// does not exclude, and by what the model misses. Such an error does not average out, however many
 /// samples there are, and its size is that of the record.
 namespace mindahl::identification {
 
-/// Includes a law that the record does not exclude in the intervals of σ, α and Tc: a
-/// closed interval of σ or Tc is extended by itself times the ratio of the values, an open one to
-/// the other value.
+/// Includes a law that the record does not exclude: a closed interval of σ or Tc is extended by
+/// itself times the ratio of the values, an open one and that of α to the other value.
 void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 
 /// Extends intervals by those of Mindlin's contact in a compliant rig, where the record does not
@@ -29,8 +25,7 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 /// far stiffer than its rig is Jenkins' element, the same curve with no other α: it is left out.
 /// @param parameters  intervals so far
 /// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
-std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, const FitOptions& options,
-                                           ParameterEstimates& parameters);
+std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters);
 
 /// Includes what steps of the readings may hide. Of the force: half of one, where no noise makes it
 /// dither; branches whose α differ by 0.05 are no more than 1 % of Tc apart. Of the displacement: a
@@ -45,18 +40,15 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
                          std::span<const OmittedTerm> causes, double quantile,
                          std::span<ParameterEstimate> estimates);
 
-/// Returns the estimates with intervals that cover the model discrepancy. Where the measured loop
-/// reaches slip, that of Tc becomes the union of the fitted value, the measured half gap with its
-/// margin, and the interval so far as far as that lies between the least and the largest of half
-/// gap, T* and the value, each with the margin: the scatter of the cycles' half gaps and the force
-/// that the model misses. Other intervals are left as they are; those of a fit that is of use count
-/// as including what the model misses.
-ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
-                                    const FitResult& result);
+/// Makes intervals cover the model discrepancy. That of σ includes the stiffness after reversals.
+/// Where the measured loop reaches slip, that of Tc becomes the union of the fitted value, the
+/// measured half gap with its margin, and the interval so far as far as that lies between the least
+/// and the largest of half gap, T* and the value, each with the margin: the scatter of the cycles'
+/// half gaps and the force that the model misses. Other intervals are left as they are.
+void CoverDiscrepancy(const Estimates& fitted, FitResult& result);
 
-/// Returns Tc; where its interval is open above its lower limit is no less than the force that the
-/// contact is seen to carry: where no force beside the contact's is fitted, T*; the half gap where
-/// the model does not describe the record.
-ParameterEstimate KeepAboveCarriedForce(const Parameters& fitted, const FitResult& result);
+/// Raises the lower limit of Tc, of an interval that is open above, to the force that the contact
+/// carries: T*, where no force beside the contact's is fitted; the half gap of a doubtful model.
+void KeepAboveCarriedForce(const Parameters& fitted, FitResult& result);
 
 }  // namespace mindahl::identification

@@ -75,7 +75,8 @@ void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
 
 }  // namespace
 
-AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds) {
+AdequacyTest TestAdequacy(const Estimates& fitted) {
+  const Thresholds& thresholds = fitted.thresholds();
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
@@ -127,7 +128,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds)
   test.step = step.law;
   test.error = (terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt();
 
-  const Evidence evidence(data.counted, effective_samples);
+  const Evidence evidence{data.counted, effective_samples};
   double least = 1.0;
   for (OmittedTerm& term : departures.terms) {
     const GramAxes of_term = gram.AxesOf(term.places);

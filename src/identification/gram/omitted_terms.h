@@ -5,7 +5,6 @@
 
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
-#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
@@ -23,6 +22,6 @@ struct AdequacyTest {
 };
 
 /// Tests a fit. Residuals that errors of the displacement make are noise, too.
-AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds);
+AdequacyTest TestAdequacy(const Estimates& fitted);
 
 }  // namespace mindahl::identification

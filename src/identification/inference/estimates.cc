@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "core/probability.h"
@@ -19,9 +18,8 @@ ParameterStatus StatusOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return ParameterStatus::kFixed;
   const BoundSide side = SideOf(parameter, theta);
   if (side == BoundSide::kInside) return ParameterStatus::kFree;
-  const bool mirrored = parameter.scale < 0;
-  return (side == BoundSide::kLower) != mirrored ? ParameterStatus::kAtLowerBound
-                                                 : ParameterStatus::kAtUpperBound;
+  const bool is_lower = (side == BoundSide::kLower) == (parameter.scale > 0);
+  return is_lower ? ParameterStatus::kAtLowerBound : ParameterStatus::kAtUpperBound;
 }
 
 std::optional<double> Finite(std::optional<double> end) {
@@ -34,15 +32,12 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   const Parameters& parameters = problem.parameters;
   const bool timed = !problem.data->records.front().velocity.empty();
   std::vector<ParameterEstimate> values;
-  values.reserve(parameters.reported().size());
   for (const std::size_t p : parameters.reported()) {
-    values.push_back({.name = parameters.NameOf(p),
-                      .unit = parameters.UnitOf(p, timed),
-                      .value = parameters[p].ToValue(solution.theta[p]),
-                      .standard_error = {},
-                      .lower95 = {},
-                      .upper95 = {},
-                      .status = StatusOf(parameters[p], solution.theta[p])});
+    ParameterEstimate& estimate = values.emplace_back();
+    estimate.name = parameters.NameOf(p);
+    estimate.unit = parameters.UnitOf(p, timed);
+    estimate.value = parameters[p].ToValue(solution.theta[p]);
+    estimate.status = StatusOf(parameters[p], solution.theta[p]);
   }
   return values;
 }
@@ -65,8 +60,7 @@ Linearization WithPriors(const Problem& problem, std::span<const double> theta, 
     const Parameter& parameter = problem.parameters[free[j]];
     if (!parameter.has_prior()) continue;
     const Eigen::Index row = at.residual.size();
-    at.jacobian.conservativeResize(row + 1, Eigen::NoChange);
-    at.jacobian.row(row).setZero();
+    at.jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, at.jacobian.cols()));
     at.jacobian(row, static_cast<Eigen::Index>(j)) = parameter.prior_root_weight;
     at.residual.conservativeResize(row + 1);
     at.residual[row] = parameter.prior_root_weight * (theta[free[j]] - parameter.prior_theta);
@@ -111,7 +105,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     : problem_(problem),
       solution_(solution),
       noise_(noise),
-      confidence_(options.confidence),
+      options_(options),
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
                                 options.confidence)),
       variance_(noise.variance * noise.repeating),
@@ -168,11 +162,9 @@ std::vector<double> Estimates::Beside(std::size_t parameter, double step) const 
   std::vector<double> theta = solution_.theta;
   theta[parameter] += step;
   const std::optional<Eigen::Index> place = PlaceOf(parameter);
-  if (!place) return theta;
-  const Eigen::VectorXd others = white_factor_.col(*place) / white_factor_(*place, *place);
-  for (Eigen::Index j = 0; j < others.size(); ++j) {
-    if (j != *place)
-      theta[problem_.parameters.free()[static_cast<std::size_t>(j)]] += step * others[j];
+  for (Eigen::Index j = 0; place && j < white_factor_.rows(); ++j) {
+    const double slope = white_factor_(j, *place) / white_factor_(*place, *place);
+    if (j != *place) theta[problem_.parameters.free()[static_cast<std::size_t>(j)]] += step * slope;
   }
   return theta;
 }
@@ -192,7 +184,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   if (parameter.fixed || !std::isfinite(error)) return;
   const bool is_inside = SideOf(parameter, theta) == BoundSide::kInside;
   // At a bound half the normal law lies beyond it.
-  const double half = (is_inside ? quantile_ : NormalQuantile(confidence_)) * error;
+  const double half = (is_inside ? quantile_ : NormalQuantile(options_.confidence)) * error;
   if (is_inside) {
     estimate.standard_error =
         parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;

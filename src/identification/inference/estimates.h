@@ -61,7 +61,7 @@ Linearization WithPriors(const Problem& problem, std::span<const double> theta, 
 /// parameters the data leave open.
 class Estimates {
  public:
-  /// @param problem  with `solution` and `noise`, must outlive this
+  /// @param problem  with `solution`, `noise` and `options`, must outlive this
   /// @param at       the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
             const FitOptions& options, Linearization at);
@@ -69,6 +69,8 @@ class Estimates {
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] const Solution& solution() const { return solution_; }
   [[nodiscard]] const Noise& noise() const { return noise_; }
+  [[nodiscard]] const FitOptions& options() const { return options_; }
+  [[nodiscard]] const Thresholds& thresholds() const { return options_.thresholds; }
 
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
@@ -82,8 +84,8 @@ class Estimates {
   /// Returns the number of directions in θ without effect on the residual.
   [[nodiscard]] std::size_t open_directions() const { return open_directions_; }
   /// Returns F of a fit with the parameter held, or another in its place, against the solution: the
-  /// rise of the sum of squares over the variance of a residual, which counts by the parameter's
-  /// variance if residuals were white and did not repeat over what it is.
+  /// rise of the sum of squares over the noise, times the ratio of the parameter's white variance
+  /// to its variance.
   [[nodiscard]] double FStatistic(std::size_t parameter, double sum_of_squares) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
@@ -100,7 +102,6 @@ class Estimates {
   }
   /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Linearization& linearization() const { return at_; }
-  [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
 
  private:
   /// Returns the place among the free parameters; nothing of one that is fixed or undetermined.
@@ -113,7 +114,7 @@ class Estimates {
   const Problem& problem_;
   const Solution& solution_;
   const Noise& noise_;
-  double confidence_;
+  const FitOptions& options_;
   double quantile_;
   double variance_;
   Linearization at_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "identification/solve/search.h"
 
@@ -53,7 +52,8 @@ class HeldParameter {
       : fitted_(fitted), problem_(fitted.problem()), parameter_(parameter), options_(options) {}
 
   /// True if a slip force far above the largest force, which is about 1, is not excluded.
-  bool IsOpenAbove(const Thresholds& thresholds) {
+  bool IsOpenAbove() {
+    const Thresholds& thresholds = fitted_.thresholds();
     const double far = std::log(thresholds.far_slip_force);
     const std::vector<double>& best = fitted_.solution().theta;
     if (far > problem_.parameters[kSlipForce].upper || far < best[kSlipForce]) return false;
@@ -66,9 +66,8 @@ class HeldParameter {
   /// Returns θ of the fits so far that are not rejected.
   [[nodiscard]] const std::vector<std::vector<double>>& region() const { return region_; }
 
-  /// Finds the value where F is the critical one on one side of the best fit; the bound where it is
-  /// less up to there; nothing where that is a limit of the search, or F is less for a factor of a
-  /// thousand.
+  /// Finds the value where F is the critical one on one side of the best fit; ValueAtBound() where
+  /// it is less up to there; nothing where F is less for a factor of a thousand.
   /// @param towards  −1 or 1, of θ
   std::optional<double> End(double towards) {
     constexpr double kFarthest = 6.9;   // of a logarithm
@@ -120,14 +119,10 @@ class HeldParameter {
 };
 
 /// True if a loop that hardly dissipates leaves open that it is far from slip.
-bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const FitOptions& options) {
+bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result) {
   constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
-  if (fitted.problem().parameters[kSlipForce].fixed ||
-      result.WidestRecord().facts.energy_ratio > kHardly) {
-    return false;
-  }
-  return HeldParameter(fitted, kSlipForce, SolverOptionsOf(options))
-      .IsOpenAbove(options.thresholds);
+  return result.WidestRecord().facts.energy_ratio <= kHardly &&
+         HeldParameter(fitted, kSlipForce, SolverOptionsOf(fitted.options())).IsOpenAbove();
 }
 
 /// True if α rests on so few samples of a stroke that the likelihood has an edge at each α where
@@ -141,27 +136,26 @@ bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
   return IsFree(fitted, kShape) && fitted.SamplesOf(kShape) < kFew * strokes;
 }
 
-/// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail: all of a loop that
-/// hardly slips, of a law at a bound, and where Tc or the rig is too badly known for a parabola; σ
-/// and α where few samples slip in part.
-std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
-                                    const FitOptions& options) {
+/// Returns the parameters of which the parabola may fail: all of a loop that hardly slips, of a law
+/// at a bound, and where Tc or the rig is badly known; σ and α where few samples slip in part.
+std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result) {
+  const Thresholds& thresholds = fitted.thresholds();
   const auto is_at_bound = [&](std::size_t p) {
     const Parameter& parameter = fitted.problem().parameters[p];
     return SideOf(parameter, fitted.solution().theta[p]) != BoundSide::kInside;
   };
   const auto is_badly_known = [&](std::size_t p) {
-    return !(fitted.HalfWidth(p) <= options.thresholds.parabola_error);
+    return !(fitted.HalfWidth(p) <= thresholds.parabola_error);
   };
   // A parallel spring may carry what the law does not: its peak is then no sign of slip.
-  const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force &&
+  const bool slips = result.PeakForce() >= thresholds.mobilised * result.law.slip_force &&
                      (!IsFree(fitted, kSpring) || loop::Slides(result.WidestRecord().facts));
   const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
-      (!slips || result.law.shape_exponent <= options.thresholds.jenkins_shape ||
+      (!slips || result.law.shape_exponent <= thresholds.jenkins_shape ||
        std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
-       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result, options));
+       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result));
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig, kSpring};
   if (RestsOnFewSamples(fitted, result)) return {kStiffness, kShape};
   if (is_badly_known(kStiffness)) return {kStiffness};
@@ -170,31 +164,30 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
 
 }  // namespace
 
-Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options) {
+Profiled Profile(const Estimates& fitted, std::size_t parameter) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
-  SolverOptions search = SolverOptionsOf(options);
+  SolverOptions search = SolverOptionsOf(fitted.options());
   search.is_rough = fitted.problem().parameters.free().size() > kMany;
   HeldParameter held(fitted, parameter, search);
   const std::optional<double> lower = held.End(-1.0);
-  const bool is_open = parameter == kSlipForce && held.IsOpenAbove(options.thresholds);
+  const bool is_open = parameter == kSlipForce && held.IsOpenAbove();
   const std::optional<double> upper = is_open ? std::nullopt : held.End(1.0);
   return {.ends = {.lower = lower, .upper = upper}, .region = held.region()};
 }
 
-ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
-                                const FitOptions& options) {
-  ParameterEstimates parameters = result.parameters;
+void ProfileIntervals(const Estimates& fitted, FitResult& result) {
+  ParameterEstimates& parameters = result.parameters;
   const Parameters& of_problem = fitted.problem().parameters;
   const auto estimate_of = [&](std::size_t p) -> ParameterEstimate& {
     const auto& reported = of_problem.reported();
     return parameters[static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin())];
   };
-  std::vector<std::size_t> profiled = ProfiledOf(fitted, result, options);
+  std::vector<std::size_t> profiled = ProfiledOf(fitted, result);
   std::erase_if(profiled, [&](std::size_t p) { return !IsFree(fitted, p); });
   std::vector<std::vector<double>> region;
   for (const std::size_t p : profiled) {
-    const Profiled profile = Profile(fitted, p, options);
+    const Profiled profile = Profile(fitted, p);
     SetInterval(estimate_of(p), profile.ends);
     region.insert(region.end(), profile.region.begin(), profile.region.end());
   }
@@ -211,7 +204,7 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
     }
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];
-  if (slip_force.status == ParameterStatus::kFixed || slip_force.upper95) return parameters;
+  if (slip_force.status == ParameterStatus::kFixed || slip_force.upper95) return;
   if (IsFree(fitted, kSpring) && !parameters[kStiffness].upper95) {
     ParameterEstimate& spring = estimate_of(kSpring);  // what it adds to σ is determined, not each
     SetInterval(spring, {.upper = spring.upper95});
@@ -220,7 +213,6 @@ ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result
   ParameterEstimate& shape = parameters[kShape];
   if (shape.status == ParameterStatus::kAtUpperBound) SetInterval(slip_force, {.lower = 0.0});
   if (shape.status != ParameterStatus::kFixed) SetInterval(shape, {.lower = shape.lower95});
-  return parameters;
 }
 
 }  // namespace mindahl::identification

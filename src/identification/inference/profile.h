@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "identification/inference/estimates.h"
-#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 
 /// Intervals by the likelihood, where the parabola of its maximum is wrong.
@@ -23,14 +22,11 @@ struct Profiled {
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
 /// the largest force that is not clearly rejected.
-Profiled Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options);
+Profiled Profile(const Estimates& fitted, std::size_t parameter);
 
-/// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig or
-/// parallel spring of which the parabola may be wrong: of a loop that hardly slips, or does not
-/// slide beside a spring, at a bound, and where they are badly known. They include every fit that
-/// is not rejected on the way to an end of any. The standard error follows. Where Tc is open above,
-/// so is α.
-ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
-                                const FitOptions& options);
+/// Makes intervals by the likelihood of those of σ, α, Tc and a fitted rig or parallel spring of
+/// which the parabola may be wrong. They include every fit that is not rejected on the way to an
+/// end of any. The standard error follows. Where Tc is open above, so is α.
+void ProfileIntervals(const Estimates& fitted, FitResult& result);
 
 }  // namespace mindahl::identification

@@ -64,8 +64,6 @@ struct ScaledRecord {
 /// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
 /// differences between fits mean nothing.
 inline constexpr double kRoundingRms = 1e-13;
-/// Residuals of which the rms is below this show nothing but rounding errors [of the force unit].
-inline constexpr double kOnlyRounding = 10 * kRoundingRms;
 
 /// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals);
