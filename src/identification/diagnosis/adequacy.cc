@@ -9,22 +9,6 @@
 
 namespace mindahl::identification {
 
-namespace {
-
-/// Returns the variance [N² or m²] of noise whatever the model: where strokes of both directions
-/// come back, of what does not repeat with them, else what differs between neighbouring samples.
-double NoiseVariance(const FitResult& result) {
-  double share = 1.0;
-  bool comes_back = false;
-  for (const RecordFit& record : result.records) {
-    share = std::min(share, record.structure.noise_share);
-    comes_back = comes_back || std::ranges::min(record.structure.strokes) > 1;
-  }
-  return comes_back ? share * result.rms * result.rms : WhiteVariance(result);
-}
-
-}  // namespace
-
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
   constexpr double kFarthest = 1.25;
   if (!loop::Slides(facts)) return false;
@@ -37,7 +21,7 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
   constexpr const char* kName = "slip_force";
   const Thresholds& thresholds = options.thresholds;
-  // Below Depth::kIntervals every model counts as adequate. The other law may carry the force.
+  // Below Depth::kIntervals there is no misfit. The other law may carry the force.
   const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
                            result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
   if (is_followed || result.prefers_other_law() || result.is_scaled_by_load() ||
@@ -101,17 +85,23 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                     .causes = {causes.begin(), causes.end()},
                     .misfit_over_half_gap = {},
                     .tried = test.fits.size()};
-  const double noise = NoiseVariance(result);
+  // Noise whatever the model: where strokes of both directions come back what does not repeat with
+  // them, else what differs between neighbouring samples.
+  double share = 1.0;
+  bool comes_back = false;
+  for (const RecordFit& record : result.records) {
+    share = std::min(share, record.structure.noise_share);
+    comes_back = comes_back || std::ranges::min(record.structure.strokes) > 1;
+  }
+  const double noise = comes_back ? share * result.rms * result.rms : WhiteVariance(result);
   const double square = result.rms * result.rms;
   // The rms includes the readings that a robust loss weighs down.
   const bool exceeds_noise =
       result.outliers == 0 && square > thresholds.larger_rms * thresholds.larger_rms * noise;
   if (exceeds_noise) {
     adequacy.p_value = std::min(adequacy.p_value, thresholds.rare_chance);
-    if (noise > 0) {
-      adequacy.misfit_over_noise =
-          std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));
-    }
+    const double excess = noise > 0 ? std::sqrt(square / noise - 1) : 0.0;
+    adequacy.misfit_over_noise = std::max(adequacy.misfit_over_noise, excess);
   }
   const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
                            AreUnlikeNoise(result, thresholds);

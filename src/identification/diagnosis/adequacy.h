@@ -37,7 +37,6 @@ std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& th
 /// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
 /// what all omitted terms explain, the search ended at a limit of its own, the residuals are unlike
 /// noise, or they exceed the noise that the record has without a model.
-/// @param causes  result of CausesOf()
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);

@@ -116,8 +116,7 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
       const auto at_limit = static_cast<double>(std::ranges::count(force, limit));
       if (at_limit < std::max(kLeast, kOften * count)) continue;
       std::vector<double> others(force.begin(), force.end());
-      std::erase(others, lowest);
-      std::erase(others, highest);
+      std::erase_if(others, [&](double at) { return at == lowest || at == highest; });
       const bool is_noisy =
           others.size() > 8 && loop::NoiseByDifferences(others, 4) > kNoise * (highest - lowest);
       std::ranges::sort(others);

@@ -23,7 +23,6 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 /// distinguish it: a rig makes a loop more angular, as a smaller α does, so that where Mindlin's
 /// exponent lies above the interval of α for a rigid rig a compliant one may restore it. A contact
 /// far stiffer than its rig is Jenkins' element, the same curve with no other α: it is left out.
-/// @param parameters  intervals so far
 /// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
 std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters);
 

@@ -214,13 +214,6 @@ constexpr auto kDepartures = std::to_array<Departure>({
     {"clock_drift", "", {LagByTime, Lag}},
 });
 
-bool HasTermOf(const Problem& problem, const Departure& departure) {
-  const std::string_view name = departure.term.empty() ? departure.group : departure.term;
-  return std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
-    return problem.parameters[p].term->name == name;
-  });
-}
-
 /// Replaces a motion of the contact beside its displacement by what it changes in the response.
 /// @param places  of all samples at θ
 /// @param data    copy of the problem's records, of which the displacements are overwritten
@@ -266,7 +259,11 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   result.columns.resize(static_cast<Eigen::Index>(problem.size()), kRoom);
   Eigen::Index count = 0;
   for (const Departure& departure : kDepartures) {
-    if (HasTermOf(problem, departure)) continue;
+    const std::string_view name = departure.term.empty() ? departure.group : departure.term;
+    const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
+      return problem.parameters[p].term->name == name;
+    });
+    if (is_fitted) continue;
     OmittedTerm term{{.code = departure.code, .term = departure.group}};
     const std::span<const DepartureColumn> columns =
         is_forced ? std::span<const DepartureColumn>(departure.of_displacement) : departure.columns;

@@ -10,9 +10,8 @@
 namespace mindahl::identification {
 namespace {
 
-/// Finds the step, from 0 on, at which a root of F over the critical one is 1; nothing where it is
-/// less at the limit.
-/// @param root_at  the root at a step
+/// Finds the step, from 0 on, at which `root_at`, the root of F over the critical one, is 1;
+/// nothing where it is less at the limit.
 template <typename RootAt>
 std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   constexpr int kMostLooks = 24;
@@ -99,8 +98,8 @@ class HeldParameter {
   }
 
  private:
-  /// @param start  θ of the others
-  /// @returns F of the best fit against that with the parameter at θ, which is the solution
+  /// Returns F of the best fit against the solution with the parameter at θ, the others from
+  /// `start`.
   double At(double theta, std::vector<double> start) {
     start[parameter_] = theta;
     problem_.parameters.Fix(parameter_, theta);

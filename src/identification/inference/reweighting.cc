@@ -82,8 +82,7 @@ class Reweighting {
     }
   }
 
-  /// Fits until the forces settle.
-  /// @returns whether they did
+  /// Fits until the forces settle. Returns whether they did.
   bool Settle(Loss loss) {
     constexpr double kTurnsBack = 0.5;
     double change = std::numeric_limits<double>::infinity();
@@ -140,8 +139,7 @@ class Reweighting {
     return true;
   }
 
-  /// Writes the cost of the solution under the weights that it implies.
-  /// @returns what these stand for
+  /// Writes the cost of the solution under the weights that it implies. Returns their noise.
   Noise Finish() {
     solution_.sum_of_squares =
         (weights_ * Residual()).square().sum() + problem_.parameters.PriorCost(solution_.theta);
