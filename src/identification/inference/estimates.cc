@@ -83,21 +83,13 @@ Eigen::MatrixXd Estimates::FindDirections(const Eigen::MatrixXd& priors) {
   const Eigen::VectorXd scale =
       rows.colwise().norm().unaryExpr([](double norm) { return norm == 0 ? 1.0 : 1 / norm; });
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows * scale.asDiagonal(), Eigen::ComputeThinV);
-  Eigen::MatrixXd directions(size, size);
-  Eigen::Index rank = 0;
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const double value = svd.singularValues()[k];
-    const Eigen::VectorXd direction = svd.matrixV().col(k);
-    if (value > kRankTolerance * svd.singularValues()[0]) {
-      directions.col(rank++) = scale.cwiseProduct(direction) / value;
-      continue;
-    }
-    ++open_directions_;
-    for (Eigen::Index j = 0; j < size; ++j) {
-      if (std::abs(direction[j]) > kOpenComponent) determined_[static_cast<std::size_t>(j)] = false;
-    }
-  }
-  return directions.leftCols(rank);
+  const Eigen::VectorXd& values = svd.singularValues();
+  const Eigen::Index rank = (values.array() > kRankTolerance * values[0]).count();
+  open_directions_ = static_cast<std::size_t>(size - rank);
+  const Eigen::ArrayXXd open = svd.matrixV().rightCols(size - rank).cwiseAbs();
+  determined_ = (open <= kOpenComponent).rowwise().all();
+  const Eigen::ArrayXXd directions = scale.asDiagonal() * svd.matrixV().leftCols(rank);
+  return directions.rowwise() / values.head(rank).transpose().array();
 }
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
@@ -109,8 +101,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
                                 options.confidence)),
       variance_(noise.variance * noise.repeating),
-      at_(std::move(at)),
-      determined_(problem.parameters.free().size(), true) {
+      at_(std::move(at)) {
   const std::vector<std::size_t>& free = problem.parameters.free();
   if (free.empty()) return;
   // A prior is one more reading, weighted by the noise of the others.
@@ -147,7 +138,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
 std::optional<Eigen::Index> Estimates::PlaceOf(std::size_t parameter) const {
   const std::vector<std::size_t>& free = problem_.parameters.free();
   const auto place = std::ranges::find(free, parameter) - free.begin();
-  if (place == std::ssize(free) || !determined_[static_cast<std::size_t>(place)]) return {};
+  if (place == std::ssize(free) || !determined_[place]) return {};
   return place;
 }
 

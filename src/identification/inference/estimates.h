@@ -120,8 +120,8 @@ class Estimates {
   Linearization at_;
   // A row and a column a free parameter; times the variance of a residual the covariance:
   Eigen::MatrixXd factor_;  // (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ where determined, JᵀRJ by the noise
-  Eigen::MatrixXd white_factor_;  // (JᵀJ)⁻¹: what white residuals would give
-  std::vector<bool> determined_;  // of each: no part in a direction without effect
+  Eigen::MatrixXd white_factor_;    // (JᵀJ)⁻¹: what white residuals would give
+  Eigen::ArrayX<bool> determined_;  // of each: no part in a direction without effect
   std::size_t open_directions_ = 0;
 };
 
