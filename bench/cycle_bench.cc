@@ -104,7 +104,7 @@ void Search(benchmark::State& state) {
   const FitOptions& options = OfSteadyCycles();
   Fitter fitter(options);
   const loop::RecordView view(Cycles().front().record);
-  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
+  loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   const identification::ScaledRecords data = identification::Scale(prepared, options);
   const identification::Problem problem(data, options, models::InitialState::kSteady);
   identification::Solver solver(problem);

@@ -72,12 +72,8 @@ CeresParameter& CeresProblem::Find(std::string_view name) {
 
 void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
   const Problem& of_fit = *state_->problem;
-  std::vector<double*> blocks;
-  for (const std::size_t p : UnprojectedResidual::BlocksOf(of_fit)) {
-    blocks.push_back(&Find(of_fit.parameters.NameOf(p)).theta);
-  }
-  problem.AddResidualBlock(new UnprojectedResidual(of_fit, state_->residual_unit, std::move(loss)),
-                           nullptr, blocks);
+  const auto block_of = [&](std::size_t p) { return &Find(of_fit.parameters.NameOf(p)).theta; };
+  AddResidualBlock(of_fit, state_->residual_unit, std::move(loss), block_of, problem);
   for (CeresParameter& parameter : state_->parameters) {
     BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }

@@ -62,9 +62,8 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
   if (options.fixed.empty() || data.is_forced()) return;
   const Problem problem(data, options, InitialState::kVirgin);
   const Parameters& parameters = problem.parameters;
-  std::vector<double> theta;
-  for (const Parameter& parameter : parameters) theta.push_back(parameter.theta);
-  std::vector<double> known(problem.size());
+  const std::vector<double> theta = parameters.Theta();
+  Eigen::VectorXd known = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.size()));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Term& term = *parameters[p].term;
     const bool is_shaped = std::ranges::any_of(parameters.free(), [&](std::size_t q) {
@@ -74,12 +73,12 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
     if (!term.adds_force() || !parameters[p].fixed || theta[p] == 0 || is_shaped) continue;
     AddColumn(problem, p, theta, -theta[p] * data.force * prepared.force_sense, known);
   }
-  if (std::ranges::all_of(known, [](double force) { return force == 0; })) return;
+  if (known.isZero(0.0)) return;
   for (std::size_t r = 0; r < prepared.records.size(); ++r) {
     loop::PreparedRecord& record = prepared.records[r];
     loop::RecordView contact = record.readings();
     contact.displacement = record.displacement();
-    const std::span<double> force = data.records[r].Of(std::span(known));
+    const std::span<double> force = data.records[r].Of(SpanOf(known));
     std::ranges::transform(force, contact.force, force.begin(), std::plus());
     contact.force = force;
     record.facts =
@@ -91,9 +90,9 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const auto& [problem, starts, solution] = solved.best;
   const ScaledRecords& data = *problem.data;
-  Eigen::VectorXd residuals = Predict(problem, solution.theta);
-  const std::span<double> of_all(residuals.data(), problem.size());
-  TakeOffMeasured(data, of_all);
+  Eigen::VectorXd residuals =
+      Predict(problem, solution.theta) - data.All(&ScaledRecord::response);
+  const std::span<double> of_all = SpanOf(residuals);
   const bool is_forced = data.is_forced();
   const double unit = is_forced ? data.length : data.force * attempt.prepared.force_sense;
   double squares = 0.0;
@@ -193,9 +192,7 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
   std::shared_ptr<const loop::DrawnReadings>& drawn = options.preparation.drawn;
   if (!drawn) drawn = loop::DrawReadings(prepared);
-  LeaveOutBeyondLags(options, prepared);
   ScaledRecords data = Scale(prepared, options);
-  AddColumns(options, prepared, data);
   if (!options.priors.empty()) {
     FitOptions open = options;
     open.priors.clear();

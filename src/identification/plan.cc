@@ -65,12 +65,11 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   const loop::Record record = LoopOf(expected, protocol);
   const FitOptions options = OptionsOf(expected);
   const loop::RecordView view = record;
-  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
+  loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
   const Problem problem(data, options, models::InitialState::kSteady);
   Solution solution;
-  std::vector<double> theta;
-  for (const Parameter& parameter : problem.parameters) theta.push_back(parameter.theta);
+  const std::vector<double> theta = problem.parameters.Theta();
   solution.theta = theta;
   Noise noise;
   FitWithWeights(problem, data, options, loop::DrawReadings(prepared).get(), solution, noise);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "identification/inference/reweighting.h"
-#include "identification/problem/motion.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -153,13 +152,7 @@ ScaledRecords ScaledAsFitted(std::span<const loop::RecordView> records, FitOptio
                              const FitOptions& with, const FitResult& fit) {
   options.preparation.force_sense = fit.force_sense;
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  LeaveOutBeyondLags(options, prepared);
-  ScaledRecords data = Scale(prepared, options);
-  AddColumns(with, prepared, data);
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    data.records[r].turns_between = fit.records[r].turns_between;
-  }
-  return data;
+  return Scale(prepared, options, &fit, &with);
 }
 
 SolvedFit SolveFit(const Attempt& attempt) {

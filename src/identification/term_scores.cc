@@ -106,7 +106,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
       for (const std::size_t p : problem.parameters.free()) {
         const Parameter& parameter = problem.parameters[p];
         const bool is_other =
-            parameter.term->of_column && parameter.column_name != choice.covariate;
+            parameter.term->of_column && parameter.covariate.name != choice.covariate;
         if (!is_other && !was_free(problem, p)) added.push_back(p);
       }
       if (added.empty()) continue;

@@ -28,22 +28,13 @@ class Stages {
         options(std::move(fit_options)),
         views(records.begin(), records.end()),
         prepared(loop::Prepare(views, options.preparation)),
-        data(ScaledRecordsOf(prepared, options)),
+        data(identification::Scale(prepared, options)),
         problem(data, options, state) {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
                   models::InitialState state = models::InitialState::kVirgin)
       : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
-
-  /// As a fit makes them.
-  static identification::ScaledRecords ScaledRecordsOf(loop::PreparedRecords& prepared,
-                                                       const identification::FitOptions& options) {
-    identification::LeaveOutBeyondLags(options, prepared);
-    identification::ScaledRecords data = identification::Scale(prepared, options);
-    identification::AddColumns(options, prepared, data);
-    return data;
-  }
 
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {

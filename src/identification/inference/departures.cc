@@ -251,6 +251,7 @@ std::span<const Departure> Departures() { return kDepartures; }
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      const Thresholds& thresholds, std::size_t most) {
   const std::vector<Place> places = PlacesOf(problem, theta, thresholds.held_readings);
+  const Eigen::ArrayXd weight = problem.data->All(&ScaledRecord::root_weight);
   ScaledRecords moved = *problem.data;
   const bool is_forced = problem.data->is_forced();
   constexpr std::size_t kRoom =
@@ -270,12 +271,12 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     for (const DepartureColumn column : columns) {
       if (column == nullptr) continue;
       const Eigen::Index place = count + std::ssize(term.places);
-      const std::span<double> values(result.columns.col(place).data(), problem.size());
+      const std::span<double> values = SpanOf(result.columns.col(place));
       std::ranges::transform(places, values.begin(), column);
       if (departure.moves && !is_forced) {
         FollowMotion(problem, {theta.begin(), theta.end()}, places, column, moved, values);
       }
-      Weight(*problem.data, values);
+      result.columns.col(place).array() *= weight;
       if (!result.columns.col(place).isZero(0.0)) term.places.push_back(place);
     }
     if (static_cast<std::size_t>(count + std::ssize(term.places)) > most) break;

@@ -42,18 +42,6 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   return values;
 }
 
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> columns) {
-  const std::size_t samples = problem.size();
-  const auto rows = static_cast<Eigen::Index>(samples);
-  Linearization at{.jacobian = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(columns.size())),
-                   .residual = Eigen::VectorXd(rows)};
-  Response response(problem);
-  Differentiate(problem, theta, response, columns, {at.residual.data(), samples},
-                {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
-  return at;
-}
-
 Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at) {
   const std::vector<std::size_t>& free = problem.parameters.free();
   for (std::size_t j = 0; j < free.size(); ++j) {

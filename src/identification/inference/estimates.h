@@ -42,15 +42,6 @@ void SetInterval(ParameterEstimate& estimate, Ends ends);
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, Ends ends);
 
-/// A problem near one point.
-struct Linearization {
-  Eigen::MatrixXd jacobian;  // weighted
-  Eigen::VectorXd residual;  // weighted, model − measured
-};
-
-/// @param columns  positions in θ to differentiate by
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> columns);
 
 /// Returns it with each prior of a free parameter as one more reading: a row at the end.
 Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at);

@@ -72,15 +72,10 @@ class Reweighting {
         options_(options),
         drawn_(drawn),
         solution_(solution),
-        counts_(static_cast<Eigen::Index>(problem.size())),
+        counts_(data.All(&ScaledRecord::counts)),
         force_(Predict(problem, solution.theta)),
         from_displacement_(Eigen::ArrayXd::Zero(counts_.size())),
-        degrees_(DegreesOfFreedom(problem)) {
-    const std::span<double> counts(counts_.data(), problem.size());
-    for (const ScaledRecord& record : data.records) {
-      std::ranges::copy(record.counts, record.Of(counts).begin());
-    }
-  }
+        degrees_(DegreesOfFreedom(problem)) {}
 
   /// Fits until the forces settle. Returns whether they did.
   bool Settle(Loss loss) {
@@ -151,9 +146,7 @@ class Reweighting {
  private:
   /// Returns model − measured of every sample, without weights.
   [[nodiscard]] Eigen::ArrayXd Residual() const {
-    Eigen::ArrayXd residual = force_;
-    TakeOffMeasured(data_, {residual.data(), problem_.size()});
-    return residual;
+    return force_ - data_.All(&ScaledRecord::response).array();
   }
 
   /// Finds the noise, and the root weights of the samples by it: weighted residuals have the

@@ -18,8 +18,8 @@ namespace {
 /// The displacements of five samples about a turn, the outermost one in the middle, and their
 /// times.
 struct FiveSamples {
-  std::array<double, 5> x;
-  std::array<double, 5> t;
+  std::span<const double, 5> x;
+  std::span<const double, 5> t;
 
   /// Velocity of the step from sample k to the next.
   [[nodiscard]] double Velocity(std::size_t k) const {
@@ -54,7 +54,8 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
   const double sense = greatest > 0 ? 1.0 : -1.0;
   const double weakest = sense > 0 ? least : -greatest;
   if (!(weakest > kSmooth * std::max(std::abs(least), std::abs(greatest)))) return std::nullopt;
-  std::array<double, 5> c = about.x;  // Newton's form
+  std::array<double, 5> c{};  // Newton's form
+  std::ranges::copy(about.x, c.begin());
   for (std::size_t order = 1; order < c.size(); ++order) {
     for (std::size_t k = c.size() - 1; k >= order; --k) {
       c[k] = (c[k] - c[k - 1]) / (about.t[k] - about.t[k - order]);
@@ -127,9 +128,7 @@ std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const m
   const std::span<const double> t = motion.time;
   std::vector<models::Turn> moved;
   const auto turn_until = [&](std::size_t count) {
-    while (moved.size() < count) {
-      moved.push_back({late.size(), turns[moved.size()].displacement});
-    }
+    while (moved.size() < count) moved.push_back({late.size(), turns[moved.size()].displacement});
   };
   std::size_t next = 1;    // the sample that the motion comes to next
   std::size_t before = 0;  // turns before this step
@@ -140,17 +139,17 @@ std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const m
     const bool turns_here = before < turns.size() && turns[before].next == next;
     const bool is_between = turns_here && turns[before].displacement != x[next - 1];
     double position = x[next];  // of two samples of the same time the later one counts
-    std::size_t count = before + (turns_here ? 1 : 0);
+    bool has_turned = turns_here;
     if (is_between) {
       const double extreme = turns[before].displacement;
       const auto [time, power] = TimeOfTurn(motion, next, extreme);
-      const std::size_t end = at < time ? next - 1 : next;
-      if (at < time) count = before;
+      has_turned = !(at < time);
+      const std::size_t end = has_turned ? next : next - 1;
       position = std::lerp(extreme, x[end], std::pow((time - at) / (time - t[end]), power));
     } else if (t[next] > t[next - 1]) {
       position = PositionBetween(motion, next, at);
     }
-    turn_until(count);
+    turn_until(before + (has_turned ? 1 : 0));
     late.push_back(position);
   }
   turn_until(turns.size());
@@ -192,18 +191,14 @@ std::vector<models::Turn> MoveBehindGap(const ScaledRecord& record,
     // The contact does not move in a stroke that is shorter than the gap.
     const double to = strokes[s].direction * (ends[s] - from) >= 0 ? ends[s] : from;
     const auto [low, high] = std::minmax(from, to);
-    const bool is_last = s == turns.size();
-    const std::size_t end = is_last ? record.size() : turns[s].next;
-    for (std::size_t i = behind.size(); i < end; ++i) {
-      behind.push_back(std::clamp(x[i] - side * half, low, high));
+    const std::size_t end = s < turns.size() ? turns[s].next : record.size();
+    while (behind.size() < end) {
+      behind.push_back(std::clamp(x[behind.size()] - side * half, low, high));
     }
-    if (is_last) {
-      behind.back() = to;
-    } else {
-      moved.push_back({end, to});
-    }
+    if (s < turns.size()) moved.push_back({end, to});
     from = to;
   }
+  behind.back() = from;
   return moved;
 }
 
@@ -222,11 +217,7 @@ std::vector<models::Turn> TurnsOf(const ScaledRecord& record) {
     const std::size_t last =
         k + 1 < motion.reversals.size() ? motion.reversals[k + 1] : x.size() - 1;
     if (!motion.turns_between || i < first + 2 || i + 2 > last) continue;
-    FiveSamples about{};
-    for (std::size_t j = 0; j < about.x.size(); ++j) {
-      about.x[j] = x[i - 2 + j];
-      about.t[j] = time[i - 2 + j];
-    }
+    const FiveSamples about{x.subspan(i - 2).first<5>(), time.subspan(i - 2).first<5>()};
     const double sense = x[i] > x[last] ? 1.0 : -1.0;
     const bool is_before = sense * (x[i - 1] - x[i + 1]) > 0;  // the nearer neighbour's side
     std::optional<double> at = SharpTurn(about, is_before ? 1 : 2);
@@ -265,12 +256,8 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
                          MeanCycleDuration(first.record.time, first.size(), reversals);
   Interval lags{-longest, longest};
-  if (const auto bound = options.bounds.find("lag"); bound != options.bounds.end()) {
-    lags = bound->second;
-  }
-  if (const auto fixed = options.fixed.find("lag"); fixed != options.fixed.end()) {
-    lags = {fixed->second, fixed->second};
-  }
+  if (options.bounds.contains("lag")) lags = options.bounds.at("lag");
+  if (options.fixed.contains("lag")) lags = {options.fixed.at("lag"), options.fixed.at("lag")};
   for (loop::PreparedRecord& record : records.records) {
     const std::span<const double> time = record.record.time;
     if (time.empty() != first.record.time.empty() ||
@@ -303,14 +290,13 @@ void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, Con
     models::MakeLoadingPath(record.excitation(), turns, memory, initial, motion.paths.front().path);
     return;
   }
-  double side = 1.0;
-  for (auto& [displacement, path] : motion.paths) {
+  for (double side = 1.0; auto& [displacement, path] : motion.paths) {
     displacement.clear();
     const std::vector<models::Turn> moved =
         kind == ContactMotion::kLate
             ? MoveLate(record, turns, amount, displacement)
-            : MoveBehindGap(record, turns, amount, std::exchange(side, -1.0), initial,
-                            displacement);
+            : MoveBehindGap(record, turns, amount, side, initial, displacement);
+    side = -1.0;
     models::MakeLoadingPath(displacement, moved, memory, initial, path);
   }
 }

@@ -23,11 +23,12 @@ namespace {
 /// forces what a cubic over the position leaves.
 double StartingPeriod(const ScaledRecords& data) {
   constexpr Eigen::Index kFrequencies = 391;  // a fifth of what a stroke resolves apart
-  constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
+  constexpr std::ptrdiff_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
   const Eigen::ArrayXd frequencies = Eigen::ArrayXd::LinSpaced(kFrequencies, 1.0, 40.0);
   Eigen::ArrayXd power = Eigen::ArrayXd::Zero(kFrequencies);
   for (const double direction : {1.0, -1.0}) {
-    std::vector<double> sliding;  // positions and forces
+    std::vector<double> sliding;  // positions …
+    std::vector<double> there;    // … and forces
     for (const ScaledRecord& record : data.records) {
       const std::vector<double>& x = record.displacement;
       for (const Stroke& stroke : StrokesOf(x, record.reversals)) {
@@ -35,18 +36,17 @@ double StartingPeriod(const ScaledRecords& data) {
         if (stroke.direction != direction) continue;
         for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
           if (record.counts[i] == 0 || direction * (x[i] - middle) < 0) continue;
-          sliding.insert(sliding.end(), {x[i], record.force[i]});
+          sliding.push_back(x[i]);
+          there.push_back(record.force[i]);
         }
       }
     }
-    const std::size_t count = sliding.size() / 2;
+    const std::ptrdiff_t count = std::ssize(sliding);
     if (count < kFewest) continue;
-    const Eigen::Map<const Eigen::Matrix2Xd> some(sliding.data(), 2,
-                                                  static_cast<Eigen::Index>(count));
-    const Eigen::ArrayXd position = some.row(0);
+    const Eigen::ArrayXd position = Eigen::ArrayXd::Map(sliding.data(), count);
+    const Eigen::VectorXd forces = Eigen::VectorXd::Map(there.data(), count);
     Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(position.size(), 4);
     for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).array() * position;
-    const Eigen::VectorXd forces = some.row(1);
     const Eigen::ArrayXd force = forces - powers * powers.colPivHouseholderQr().solve(forces);
     for (Eigen::Index k = 0; k < kFrequencies; ++k) {
       const Eigen::ArrayXd phase = 2 * std::numbers::pi * frequencies[k] * position;
@@ -95,20 +95,16 @@ void Hold(Parameter& parameter, double value) {
   parameter.fixed = true;
 }
 
-/// True if a record begins where both zeros of its file are.
-bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
-  const double displacement =
-      data.displacement.front() * data.units.length + data.units.displacement_reference;
-  const double force = data.force.front() * data.units.force + data.units.force_reference;
-  return std::abs(displacement) <= options.thresholds.starts_unloaded * data.units.length &&
-         std::abs(force) <= options.thresholds.starts_without_force * data.units.force;
-}
-
 /// A single loading curve looks the same from any reference position: where the contact is unloaded
-/// must be said. It is the file's zero where the record begins there; else the first sample, where
-/// the force is then the offset's.
+/// must be said. It is the file's zero where the record begins at both zeros of its file; else the
+/// first sample, where the force is then the offset's.
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
-  if (BeginsAtZero(data, options)) {
+  const TermUnits& units = data.units;
+  const double displacement =
+      data.displacement.front() * units.length + units.displacement_reference;
+  const double force = data.force.front() * units.force + units.force_reference;
+  if (std::abs(displacement) <= options.thresholds.starts_unloaded * units.length &&
+      std::abs(force) <= options.thresholds.starts_without_force * units.force) {
     Hold(parameter, 0.0);
   } else if (!parameter.term->is_linear) {
     parameter.theta = data.excitation().front();
@@ -129,31 +125,18 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
     parameter.lower = -parameter.upper;
   }
   const bool is_asked_for = std::ranges::find(options.terms, term.name) != options.terms.end();
-  switch (term.presence) {
-    case Presence::kAlways:
-      break;
-    case Presence::kOffsets:
-      if (!options.offsets) {
-        Hold(parameter, 0.0);
-      } else if (!data.Turns()) {
-        HoldOrigin(data, options, parameter);
-      }
-      break;
-    case Presence::kReported:
-      if (!is_asked_for) Hold(parameter, 0.0);
-      break;
-    case Presence::kOnDemand:
-      parameter.fixed = parameter.absent = !is_asked_for && !term.of_column;
-      if (!is_asked_for) break;
-      parameter.theta = term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all))
-                                                         : term.start.value_or(0.0);
-      break;
-    case Presence::kLoadSeries:
-      parameter.fixed = parameter.absent = !all.is_load_series;
-      break;
-    case Presence::kNever:
-      parameter.fixed = parameter.absent = true;
-      break;
+  const auto is = [&](Presence presence) { return term.presence == presence; };
+  parameter.absent = is(Presence::kNever) || (is(Presence::kLoadSeries) && !all.is_load_series) ||
+                     (is(Presence::kOnDemand) && !is_asked_for && !term.of_column);
+  parameter.fixed = parameter.absent;
+  if (is(Presence::kOffsets) && !options.offsets) Hold(parameter, 0.0);
+  if (is(Presence::kReported) && !is_asked_for) Hold(parameter, 0.0);
+  if (is(Presence::kOffsets) && options.offsets && !data.Turns()) {
+    HoldOrigin(data, options, parameter);
+  }
+  if (is(Presence::kOnDemand) && is_asked_for) {
+    parameter.theta =
+        term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all)) : term.start.value_or(0.0);
   }
   return parameter;
 }
@@ -202,7 +185,7 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
                        models::InitialState initial_state)
-    : records_(data.records.size()), origin_(OriginId(data.excitation)) {
+    : records_(data.records.size()), excitation_(data.excitation) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   const bool is_steady = initial_state == models::InitialState::kSteady;
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
@@ -213,13 +196,11 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       for (std::size_t c = 0; c < count; ++c) {
         Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
         // The centre of the loop.
-        if (term.id == origin_ && is_steady) Hold(parameter, parameter.reference);
+        if (term.id == OriginId(excitation_) && is_steady) Hold(parameter, parameter.reference);
         if (!term.of_column) continue;
-        const CovariateColumn& covariate = data.covariates[c];
         parameter.column = c;
-        parameter.column_name = covariate.name;
-        parameter.column_unit = covariate.unit;
-        parameter.scale /= covariate.scale;
+        parameter.covariate = data.covariates[c];
+        parameter.scale /= parameter.covariate.scale;
       }
     }
   }
@@ -299,11 +280,9 @@ void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data) {
 void Parameters::Sort() {
   free_.clear();
   reported_.clear();
-  with_prior_.clear();
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (!parameters_[i].fixed) free_.push_back(i);
     if (!parameters_[i].absent) reported_.push_back(i);
-    if (parameters_[i].has_prior()) with_prior_.push_back(i);
   }
 }
 
@@ -323,13 +302,9 @@ std::size_t Parameters::PositionOfMotion() const {
   return static_cast<std::size_t>(std::ranges::find_if(parameters_, moves) - parameters_.begin());
 }
 
-std::size_t Parameters::PositionOfOrigin(std::size_t record) const {
-  return PositionOf(origin_, record);
-}
-
 std::string Parameters::NameOf(std::size_t i) const {
   const Parameter& parameter = parameters_[i];
-  if (parameter.term->of_column) return NameOfCovariate(parameter.column_name);
+  if (parameter.term->of_column) return NameOfCovariate(parameter.covariate.name);
   const bool is_numbered = parameter.term->is_of_record && records_ > 1;
   return is_numbered ? fmt::format("{}_{}", parameter.term->name, parameter.record + 1)
                      : std::string(parameter.term->name);
@@ -337,9 +312,8 @@ std::string Parameters::NameOf(std::size_t i) const {
 
 std::string Parameters::UnitOf(std::size_t i, bool timed) const {
   const Term& term = *parameters_[i].term;
-  if (term.of_column && !parameters_[i].column_unit.empty()) {
-    return fmt::format("N/{}", parameters_[i].column_unit);
-  }
+  const std::string_view of_column = parameters_[i].covariate.unit;
+  if (!of_column.empty()) return fmt::format("N/{}", of_column);
   return std::string(timed || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
 }
 
@@ -352,9 +326,7 @@ Parameter& Parameters::Find(std::string_view name, std::string_view what) {
           "than 1 %; give --normal-load N1,N2,...",
           name));
     }
-    const bool fits_force = origin_ == TermId::kDisplacementOffset;
-    RequirePlace(*parameters_[i].term,
-                 fits_force ? loop::Channel::kForce : loop::Channel::kDisplacement);
+    RequirePlace(*parameters_[i].term, loop::Other(excitation_));
     return parameters_[i];
   }
   std::vector<std::string> names;
@@ -388,7 +360,7 @@ void Parameters::ApplyLimits(const FitOptions& options, bool is_steady) {
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->id == origin_ && is_steady) {
+    if (parameter.term->id == OriginId(excitation_) && is_steady) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",
@@ -430,9 +402,16 @@ void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
   }
 }
 
+std::vector<double> Parameters::Theta() const {
+  std::vector<double> theta;
+  for (const Parameter& parameter : parameters_) theta.push_back(parameter.theta);
+  return theta;
+}
+
 double Parameters::PriorCost(std::span<const double> theta) const {
   double cost = 0.0;
-  for (const std::size_t p : with_prior_) {
+  for (std::size_t p = 0; p < size(); ++p) {
+    if (!parameters_[p].has_prior()) continue;
     const double off = parameters_[p].prior_root_weight * (theta[p] - parameters_[p].prior_theta);
     cost += off * off;
   }

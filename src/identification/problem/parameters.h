@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -26,9 +27,8 @@ void RequirePlace(const Term& term, loop::Channel response);
 struct Parameter {
   const Term* term = nullptr;
   std::size_t record = 0;
-  std::size_t column = 0;             // of a covariate, among those of ScaledRecords
-  std::string_view column_name = {};  // its name and unit
-  std::string_view column_unit = {};
+  std::size_t column = 0;  // of a covariate, among those of ScaledRecords
+  CovariateColumn covariate = {};
   double reference = 0.0;
   double scale = 1.0;
   double theta = 0.0;  // where it is fixed
@@ -50,6 +50,8 @@ struct Parameter {
   [[nodiscard]] bool has_prior() const { return prior_root_weight > 0; }
   /// True if the data alone say what it is.
   [[nodiscard]] bool is_open() const { return !fixed && !has_prior(); }
+  /// Returns θ moved into the bounds.
+  [[nodiscard]] double Clamp(double at_theta) const { return std::clamp(at_theta, lower, upper); }
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
   [[nodiscard]] bool is_exponent() const { return term->name.ends_with("_exponent"); }
@@ -93,16 +95,18 @@ class Parameters {
   [[nodiscard]] auto begin() const { return parameters_.begin(); }
   [[nodiscard]] auto end() const { return parameters_.end(); }
 
+  /// Returns θ of all, where they are held or where a search may begin.
+  [[nodiscard]] std::vector<double> Theta() const;
   /// Positions of the free ones.
   [[nodiscard]] const std::vector<std::size_t>& free() const { return free_; }
-  /// Positions of those with a prior, held ones included.
-  [[nodiscard]] const std::vector<std::size_t>& with_prior() const { return with_prior_; }
   /// Σ of the squared residuals of the priors.
   [[nodiscard]] double PriorCost(std::span<const double> theta) const;
   /// Positions of those that a result reports.
   [[nodiscard]] const std::vector<std::size_t>& reported() const { return reported_; }
   /// Returns the place of a record's reference position, in the imposed channel.
-  [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const;
+  [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const {
+    return PositionOf(OriginId(excitation_), record);
+  }
   /// Returns the place of the contact's term, or of a record's; size() of a covariate's where there
   /// is none.
   [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record = 0) const;
@@ -143,9 +147,8 @@ class Parameters {
   std::vector<Parameter> parameters_;
   std::vector<std::size_t> free_;
   std::vector<std::size_t> reported_;
-  std::vector<std::size_t> with_prior_;
   std::size_t records_ = 1;
-  TermId origin_;
+  loop::Channel excitation_;
 };
 
 }  // namespace mindahl::identification

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -108,40 +109,29 @@ bool IsInRecord(const Parameter& parameter, std::size_t record) {
   return !parameter.absent && (!parameter.term->is_of_record || parameter.record == record);
 }
 
-/// The derivative of scale·t over the scale by a parameter, in multiples of t and of derivatives
-/// of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
-struct ChainRule {
-  double of_t = 0.0;
-  double by_rate = 0.0;  // that of TermId::kSigma
-  double by_rig = 0.0;
-  double by_itself = 0.0;
-};
+/// t, in the place of one of its derivatives.
+constexpr TermId kItself = TermId::kSlipForce;
 
-ChainRule ChainRuleOf(const Problem& problem, const Parameter& parameter,
-                      const ScaledRecord& record) {
-  switch (parameter.term->id) {
+/// Returns the derivative of scale·t over the scale by a parameter, as multiples of t and of
+/// derivatives of t, which depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is
+/// Tc, or Tc/σ.
+std::vector<std::pair<TermId, double>> ChainRuleOf(const Problem& problem,
+                                                   const Parameter& parameter,
+                                                   const ScaledRecord& record) {
+  const TermId id = parameter.term->id;
+  switch (id) {
     case TermId::kSigma:
-      if (problem.data->is_forced()) return {.of_t = -1};
-      return {.by_rate = 1};
+      return {problem.data->is_forced() ? std::pair(kItself, -1.0) : std::pair(id, 1.0)};
     case TermId::kSlipForce:
-      return {.of_t = 1, .by_rate = -1, .by_rig = problem.parameters.has_rig() ? 1.0 : 0.0};
+      if (!problem.parameters.has_rig()) return {{kItself, 1}, {TermId::kSigma, -1}};
+      return {{kItself, 1}, {TermId::kSigma, -1}, {TermId::kRigStiffness, 1}};
     case TermId::kRigStiffness:
-      return {.by_rig = -1};
+      return {{id, -1}};
     case TermId::kLoadExponent:
-      return {.by_rate = std::log(record.load)};
+      return {{TermId::kSigma, std::log(record.load)}};
     default:
-      return {.by_itself =
-                  parameter.term->is_linear || !parameter.term->shapes.empty() ? 0.0 : 1.0};
-  }
-}
-
-/// Adds what is linear in its parameters to the scaled t.
-void Complete(const Problem& problem, std::span<const double> theta, std::span<double> predicted) {
-  const double scale = std::exp(LogScaleAt(problem, theta));
-  for (double& value : predicted) value *= scale;
-  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    if (!problem.parameters[p].term->is_linear || theta[p] == 0) continue;
-    AddColumn(problem, p, theta, theta[p], predicted);
+      if (parameter.term->is_linear || !parameter.term->shapes.empty()) return {};
+      return {{id, 1}};
   }
 }
 
@@ -163,8 +153,7 @@ ResponseColumns ResponseColumns::Of(const ScaledRecord& record) const {
 Response::Response(const Problem& problem)
     : problem_(problem), moves_(problem.parameters.PositionOfMotion()) {
   const std::vector<ScaledRecord>& records = problem.data->records;
-  const bool is_late = moves_ < problem.parameters.size() &&
-                       problem.parameters[moves_].term->motion == ContactMotion::kLate;
+  const bool is_late = Has(TermId::kLag);
   motions_.resize(records.size());
   turns_.resize(records.size());
   histories_.resize(records.size());
@@ -287,10 +276,8 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
     }
     if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);
     if (record.load == 1) continue;
-    for (double& value : values) value *= record.load;
-    for (const std::span<double> column : parts) {
-      for (double& value : column) value *= record.load;
-    }
+    ArrayOf(values) *= record.load;
+    for (const std::span<double> column : parts) ArrayOf(column) *= record.load;
   }
 }
 
@@ -338,16 +325,25 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
 }
 
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
-               double factor, std::span<double> to, bool derivative) {
+               double factor, Eigen::Ref<Eigen::VectorXd> to, bool derivative) {
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     if (!IsInRecord(problem.parameters[parameter], r)) continue;
-    ArrayOf(record.Of(to)) += factor * ColumnOf(problem, parameter, record, theta, derivative);
+    ArrayOf(record.Of(SpanOf(to))) +=
+        factor * ColumnOf(problem, parameter, record, theta, derivative);
+  }
+}
+
+void AddLinearTerms(const Problem& problem, std::span<const double> theta, double factor,
+                    Eigen::VectorXd& to) {
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    if (!problem.parameters[p].term->is_linear || theta[p] == 0) continue;
+    AddColumn(problem, p, theta, factor * theta[p], to);
   }
 }
 
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
-                            std::span<const double> theta, std::span<double> to) {
+                            std::span<const double> theta, Eigen::Ref<Eigen::VectorXd> to) {
   const Term& term = *problem.parameters[parameter].term;
   if (term.is_linear) AddColumn(problem, parameter, theta, 1.0, to);
   if (term.shapes.empty()) return;
@@ -358,92 +354,74 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
   }
 }
 
-void Weight(const ScaledRecords& data, std::span<double> values) {
-  for (const ScaledRecord& record : data.records) {
-    ArrayOf(record.Of(values)) *= ArrayOf(record.root_weight);
-  }
-}
-
-void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
-  for (const ScaledRecord& record : data.records) {
-    ArrayOf(record.Of(predicted)) -= ArrayOf(record.response());
-  }
-}
-
 Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta) {
   Eigen::VectorXd predicted(static_cast<Eigen::Index>(problem.size()));
-  const std::span<double> values(predicted.data(), problem.size());
-  Response(problem).Evaluate(theta, values);
-  Complete(problem, theta, values);
+  Response(problem).Evaluate(theta, SpanOf(predicted));
+  predicted *= std::exp(LogScaleAt(problem, theta));
+  AddLinearTerms(problem, theta, 1.0, predicted);
   return predicted;
+}
+
+Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta) {
+  const Eigen::VectorXd residual =
+      Predict(problem, theta) - problem.data->All(&ScaledRecord::response);
+  return residual.cwiseProduct(problem.data->All(&ScaledRecord::root_weight));
 }
 
 void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
                            Response& response, std::span<const std::size_t> parameters,
-                           std::span<double> t, std::span<double> columns) {
-  const std::size_t samples = problem.size();
+                           Eigen::VectorXd& t, Eigen::MatrixXd& columns) {
   // Each derivative of t is computed once, for however many parameters.
-  std::vector<TermId> wanted;
-  const auto want = [&](TermId id, double factor) {
-    if (factor != 0 && std::ranges::find(wanted, id) == wanted.end()) wanted.push_back(id);
-  };
+  std::map<TermId, Eigen::VectorXd> wanted;
   for (const std::size_t p : parameters) {
-    for (const ScaledRecord& record : problem.data->records) {
-      const Parameter& parameter = problem.parameters[p];
-      const ChainRule rule = ChainRuleOf(problem, parameter, record);
-      want(TermId::kSigma, rule.by_rate);
-      want(TermId::kRigStiffness, rule.by_rig);
-      want(parameter.term->id, rule.by_itself);
+    const ScaledRecord& any = problem.data->records.front();
+    for (const auto& [id, factor] : ChainRuleOf(problem, problem.parameters[p], any)) {
+      if (id != kItself) wanted[id].resize(t.size());
     }
   }
   ResponseColumns gradient;
-  const std::span<double> scratch = response.Scratch(wanted.size() * samples);
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    gradient[wanted[k]] = scratch.subspan(k * samples, samples);
-  }
-  response.Evaluate(theta, t, gradient);
-  std::ranges::fill(columns, 0.0);
+  for (auto& [id, derivative] : wanted) gradient[id] = SpanOf(derivative);
+  response.Evaluate(theta, SpanOf(t), gradient);
+  gradient[kItself] = SpanOf(t);
+  columns.setZero(t.size(), std::ssize(parameters));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const Parameter& parameter = problem.parameters[parameters[k]];
-    const std::span<double> column = columns.subspan(k * samples, samples);
+    const std::span<double> column = SpanOf(columns.col(static_cast<Eigen::Index>(k)));
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
       if (!IsInRecord(parameter, r)) continue;
-      const auto add = [&](double factor, std::span<const double> derivative) {
-        if (factor != 0) ArrayOf(record.Of(column)) += factor * ArrayOf(record.Of(derivative));
-      };
-      const ChainRule rule = ChainRuleOf(problem, parameter, record);
-      add(rule.of_t, t);
-      add(rule.by_rate, gradient[TermId::kSigma]);
-      add(rule.by_rig, gradient[TermId::kRigStiffness]);
-      add(rule.by_itself, gradient[parameter.term->id]);
+      for (const auto& [id, factor] : ChainRuleOf(problem, parameter, record)) {
+        ArrayOf(record.Of(column)) += factor * ArrayOf(record.Of(gradient[id]));
+      }
     }
   }
 }
 
-void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
-                   std::span<const std::size_t> columns, std::span<double> residual,
-                   std::span<double> jacobian) {
-  // `residual` is t until the rest is added, and what is measured taken off.
-  DifferentiateResponse(problem, theta, response, columns, residual, jacobian);
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
+                          std::span<const std::size_t> parameters, Response& response) {
+  Linearization at;
+  at.residual.resize(static_cast<Eigen::Index>(problem.size()));
+  // The residual is t until the rest is added, and what is measured taken off.
+  DifferentiateResponse(problem, theta, response, parameters, at.residual, at.jacobian);
   const double scale = std::exp(LogScaleAt(problem, theta));
-  for (double& value : jacobian) value *= scale;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const std::span<double> column = jacobian.subspan(k * problem.size(), problem.size());
-    AddDerivativeOfColumns(problem, columns[k], theta, column);
-    Weight(*problem.data, column);
+  at.jacobian *= scale;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    AddDerivativeOfColumns(problem, parameters[k], theta,
+                           at.jacobian.col(static_cast<Eigen::Index>(k)));
   }
-  Complete(problem, theta, residual);
-  TakeOffMeasured(*problem.data, residual);
-  Weight(*problem.data, residual);
+  at.residual *= scale;
+  AddLinearTerms(problem, theta, 1.0, at.residual);
+  at.residual -= problem.data->All(&ScaledRecord::response);
+  const Eigen::ArrayXd weight = problem.data->All(&ScaledRecord::root_weight);
+  at.residual.array() *= weight;
+  at.jacobian.array().colwise() *= weight;
+  return at;
 }
 
-Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta) {
-  Eigen::VectorXd residual = Predict(problem, theta);
-  const std::span<double> values(residual.data(), problem.size());
-  TakeOffMeasured(*problem.data, values);
-  Weight(*problem.data, values);
-  return residual;
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
+                          std::span<const std::size_t> parameters) {
+  Response response(problem);
+  return LinearizeAt(problem, theta, parameters, response);
 }
 
 }  // namespace mindahl::identification

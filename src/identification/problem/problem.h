@@ -66,11 +66,6 @@ class Response {
                 const ResponseColumns& columns = {});
   /// Returns where the contact of a record is.
   const Motion& MotionOf(std::size_t record, std::span<const double> theta);
-  /// Columns for derivatives on their way to a Jacobian; valid until the next call.
-  std::span<double> Scratch(std::size_t size) {
-    if (scratch_.size() < size) scratch_.resize(size);
-    return std::span(scratch_).first(size);
-  }
 
  private:
   /// Evaluates one record by its path, over the slip force of the path.
@@ -92,18 +87,11 @@ class Response {
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   models::NormalizedLoadedResponse loaded_response_;
-  std::vector<double> scratch_;
   bool slip_varies_ = false;  // over positions, speeds or time
 };
 
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
 Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta);
-
-/// Takes what is measured off what the model predicts, of every sample; no weight.
-void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
-
-/// Multiplies values of every sample by the roots of their weights.
-void Weight(const ScaledRecords& data, std::span<double> values);
 
 /// Weighted residuals, model − measured, of every sample.
 Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta);
@@ -112,28 +100,37 @@ Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double>
 /// @param theta       of all parameters: a column may depend on some (Term::shapes)
 /// @param derivative  adds the column's derivative by the parameter that shapes it instead
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
-               double factor, std::span<double> to, bool derivative = false);
+               double factor, Eigen::Ref<Eigen::VectorXd> to, bool derivative = false);
+
+/// Adds a multiple of Σ θ_q·column_q of all linear parameters, of every sample; no weight.
+void AddLinearTerms(const Problem& problem, std::span<const double> theta, double factor,
+                    Eigen::VectorXd& to);
 
 /// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, of every sample, no weight: its own column where it is
 /// linear, else those of the columns that it shapes.
 /// @param theta  of all parameters, the linear ones included
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
-                            std::span<const double> theta, std::span<double> to);
+                            std::span<const double> theta, Eigen::Ref<Eigen::VectorXd> to);
 
 /// Computes t and the derivatives of scale·t by parameters over the scale, of all samples, without
 /// weights; those by linear ones are 0.
-/// @param columns  column-major, size() × parameters.size()
+/// @param t        of size()
+/// @param columns  a column a parameter; resized
 void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
                            Response& response, std::span<const std::size_t> parameters,
-                           std::span<double> t, std::span<double> columns);
+                           Eigen::VectorXd& t, Eigen::MatrixXd& columns);
 
-/// Computes the weighted residuals, model − measured, and their derivatives by the parameters at
-/// `columns`.
-/// @param response  of the problem
-/// @param residual  size() values
-/// @param jacobian  column-major, size() × columns.size()
-void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
-                   std::span<const std::size_t> columns, std::span<double> residual,
-                   std::span<double> jacobian);
+/// A problem near one point.
+struct Linearization {
+  Eigen::MatrixXd jacobian;  // weighted
+  Eigen::VectorXd residual;  // weighted, model − measured
+};
+
+/// @param response    of the problem
+/// @param parameters  to differentiate by
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
+                          std::span<const std::size_t> parameters, Response& response);
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
+                          std::span<const std::size_t> parameters);
 
 }  // namespace mindahl::identification

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
@@ -44,6 +45,14 @@ ColumnRange RangeOf(std::span<const double> values) {
   const auto [lowest, highest] = ExtremesOf(values);
   const double half = highest / 2 - lowest / 2;
   return {lowest + half, half};
+}
+
+/// Returns (x − reference)/unit of values x.
+std::vector<double> Scaled(std::span<const double> values, double reference, double unit) {
+  std::vector<double> scaled(values.size());
+  std::ranges::transform(values, scaled.begin(),
+                         [&](double value) { return (value - reference) / unit; });
+  return scaled;
 }
 
 /// Squares, products and ratios of displacements and forces must neither overflow nor vanish.
@@ -104,13 +113,9 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
 /// True if the law models a load that varies. The displacement is then that of the contact alone;
 /// of Masing's law it is read with the force, and slip is as easy in either direction.
 bool KnowsVaryingLoads(const FitOptions& options, bool is_joint) {
-  return std::ranges::none_of(Terms(), [&](const Term& term) {
-    const bool is_other =
-        term.id == TermId::kRigStiffness ||
-        (is_joint ? term.motion == ContactMotion::kBehindGap
-                  : term.motion != ContactMotion::kMeasured || term.id == TermId::kAsymmetry);
-    return is_other && HasTerm(options, term.name);
-  });
+  const auto has = [&](TermId id) { return HasTerm(options, id); };
+  return !has(TermId::kRigStiffness) && !has(TermId::kBacklash) &&
+         (is_joint || (!has(TermId::kLag) && !has(TermId::kAsymmetry)));
 }
 
 /// Takes the loads within a record from their column.
@@ -170,6 +175,54 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
   }
 }
 
+/// Adds the columns that terms need beyond those of every fit, and covariates.
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
+                ScaledRecords& data) {
+  const bool asks_speed = std::ranges::any_of(
+      std::array{TermId::kSpeedExponent, TermId::kSlipSpeedExponent, TermId::kDragExponent},
+      [&](TermId id) { return HasTerm(options, id); });
+  const double unit = data.records.front().units.half_duration;
+  const double reference = asks_speed ? SpeedInTheMiddle(data) : 1.0;
+  for (ScaledRecord& record : data.records) {
+    record.units.reference_speed = reference;
+    if (record.velocity.empty()) continue;
+    if (asks_speed) FillLogSpeed(record);
+    if (HasTerm(options, TermId::kInertia)) {
+      record.acceleration = DerivativeOf(record.velocity, record, unit);
+    }
+  }
+  for (const std::string& name : options.covariates) {
+    std::vector<const loop::Covariate*> columns;
+    double scale = 0.0;
+    for (const loop::PreparedRecord& record : records.records) {
+      const auto& all = record.record.covariates;
+      const auto found = std::ranges::find(all, name, &loop::Covariate::name);
+      if (found == all.end()) {
+        throw InvalidArgument(
+            fmt::format("record {} has no covariate '{}'", columns.size() + 1, name));
+      }
+      columns.push_back(&*found);
+      scale = std::max(scale, RangeOf(found->values).half);
+    }
+    RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
+    const std::size_t own = data.covariates.size();
+    data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      const double reference_value = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
+      data.records[r].covariates.push_back(Scaled(columns[r]->values, reference_value, scale));
+    }
+    if (options.fixed.contains(NameOfCovariate(name))) continue;
+    const auto is_force = [own](const ScaledRecord& record) {
+      return AreOneChannel(record.covariates[own], record.force);
+    };
+    if (!std::ranges::all_of(data.records, is_force)) continue;
+    throw InvalidArgument(
+        fmt::format("the covariate '{}' is a linear function of 'force', one channel with it: "
+                    "leave it out",
+                    name));
+  }
+}
+
 }  // namespace
 
 std::size_t ScaledRecord::CountTurns() const {
@@ -197,18 +250,14 @@ ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
   return some;
 }
 
-std::size_t ScaledRecords::samples() const {
-  std::size_t count = 0;
-  for (const ScaledRecord& record : records) count += record.size();
-  return count;
-}
-
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
   const double whole = time.empty() ? static_cast<double>(samples) - 1 : time.back() - time.front();
   return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
 }
 
-ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options) {
+ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, const FitResult* fit,
+                    const FitOptions* with) {
+  LeaveOutBeyondLags(options, records);
   ScaledRecords scaled;
   scaled.excitation = records.excitation;
   scaled.length = scaled.force = 0.0;
@@ -222,9 +271,15 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   const double sense = records.force_sense;
   for (const loop::PreparedRecord& prepared : records.records) {
     const std::span<const double> displacement = prepared.displacement();
-    const std::span<const double> force = prepared.force();
-    const std::span<const double> time = prepared.record.time;
-    const std::size_t size = prepared.size();
+    std::vector<double> force(prepared.force().begin(), prepared.force().end());
+    for (double& value : force) value *= sense;
+    std::vector<double> time(prepared.record.time.begin(), prepared.record.time.end());
+    const bool is_timed = !time.empty();
+    while (time.size() < prepared.size()) time.push_back(static_cast<double>(time.size()));
+    const double duration = time.back() - time.front();
+    if (is_timed && duration > 0) {
+      RequireScale("half duration [s]", time.back() / 2 - time.front() / 2);
+    }
     const std::size_t before = scaled.samples();
     ScaledRecord& target = scaled.records.emplace_back();
     target.first = before;
@@ -233,34 +288,26 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     target.reversals = prepared.reversals;
     target.begins_at_turn = options.preparation.begins_at_turn;
     target.counts = prepared.counts;
-    const double first = time.empty() ? 0.0 : time.front();
-    const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
-    if (!time.empty() && last > first) RequireScale("half duration [s]", last / 2 - first / 2);
+    target.turns_between = fit != nullptr && fit->records[scaled.records.size() - 1].turns_between;
     target.units = {.force = scaled.force,
                     .length = scaled.length,
-                    .half_duration = last > first ? (last - first) / 2 : 1.0,
-                    .cycle = MeanCycleDuration(time, size, prepared.reversals.size()),
+                    .half_duration = duration > 0 ? duration / 2 : 1.0,
+                    .cycle = MeanCycleDuration(time, time.size(), prepared.reversals.size()),
                     .force_sense = sense,
-                    .force_reference = sense * RangeOf(force).middle,
+                    .force_reference = sense * RangeOf(prepared.force()).middle,
                     .displacement_reference = RangeOf(displacement).middle};
-    for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
-      column->reserve(size);
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      const TermUnits& units = target.units;
-      const double at = time.empty() ? static_cast<double>(i) : time[i];
-      target.displacement.push_back((displacement[i] - units.displacement_reference) /
-                                    units.length);
-      target.force.push_back((sense * force[i] - units.force_reference) / units.force);
-      target.time.push_back((at - first) / units.half_duration - 1);
-      target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
-    }
-    if (time.empty()) continue;
+    target.displacement = Scaled(displacement, target.units.displacement_reference, scaled.length);
+    target.force = Scaled(force, target.units.force_reference, scaled.force);
+    target.time = Scaled(time, time.front(), target.units.half_duration);
+    for (double& value : target.time) value -= 1;
+    target.root_weight.assign(prepared.counts.begin(), prepared.counts.end());
+    if (!is_timed) continue;
     const double unit = scaled.records.front().units.half_duration;
     target.velocity = DerivativeOf(target.displacement, target, unit);
     target.units.speed = target.units.length / unit;
   }
   TakeLoads(scaled, records, options);
+  AddColumns(with != nullptr ? *with : options, records, scaled);
   return scaled;
 }
 
@@ -296,56 +343,6 @@ std::vector<double> DirectionsOf(std::span<const double> excitation,
     }
   }
   return directions;
-}
-
-void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
-                ScaledRecords& data) {
-  const bool asks_speed = std::ranges::any_of(
-      std::array{TermId::kSpeedExponent, TermId::kSlipSpeedExponent, TermId::kDragExponent},
-      [&](TermId id) { return HasTerm(options, id); });
-  const double unit = data.records.front().units.half_duration;
-  const double reference = asks_speed ? SpeedInTheMiddle(data) : 1.0;
-  for (ScaledRecord& record : data.records) {
-    record.units.reference_speed = reference;
-    if (record.velocity.empty()) continue;
-    if (asks_speed) FillLogSpeed(record);
-    if (HasTerm(options, TermId::kInertia)) {
-      record.acceleration = DerivativeOf(record.velocity, record, unit);
-    }
-  }
-  for (const std::string& name : options.covariates) {
-    std::vector<const loop::Covariate*> columns;
-    double scale = 0.0;
-    for (const loop::PreparedRecord& record : records.records) {
-      const auto& all = record.record.covariates;
-      const auto found = std::ranges::find(all, name, &loop::Covariate::name);
-      if (found == all.end()) {
-        throw InvalidArgument(
-            fmt::format("record {} has no covariate '{}'", columns.size() + 1, name));
-      }
-      columns.push_back(&*found);
-      scale = std::max(scale, RangeOf(found->values).half);
-    }
-    RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
-    const std::size_t own = data.covariates.size();
-    data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
-    for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const double reference_value = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
-      std::vector<double>& column = data.records[r].covariates.emplace_back();
-      for (const double value : columns[r]->values) {
-        column.push_back((value - reference_value) / scale);
-      }
-    }
-    if (options.fixed.contains(NameOfCovariate(name))) continue;
-    const auto is_force = [own](const ScaledRecord& record) {
-      return AreOneChannel(record.covariates[own], record.force);
-    };
-    if (!std::ranges::all_of(data.records, is_force)) continue;
-    throw InvalidArgument(
-        fmt::format("the covariate '{}' is a linear function of 'force', one channel with it: "
-                    "leave it out",
-                    name));
-  }
 }
 
 ScaledRecords Thinned(const ScaledRecords& data) {

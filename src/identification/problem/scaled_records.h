@@ -1,11 +1,15 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 
@@ -61,6 +65,11 @@ struct ScaledRecord {
   }
 };
 
+/// Returns the memory of a column, as the models write it.
+inline std::span<double> SpanOf(Eigen::Ref<Eigen::VectorXd> column) {
+  return {column.data(), static_cast<std::size_t>(column.size())};
+}
+
 /// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
 /// differences between fits mean nothing.
 inline constexpr double kRoundingRms = 1e-13;
@@ -93,25 +102,36 @@ struct ScaledRecords {
   [[nodiscard]] bool is_forced() const { return excitation == loop::Channel::kForce; }
   /// Returns the unit of the channel that is fitted [N or m].
   [[nodiscard]] double response_unit() const { return is_forced() ? length : force; }
-  [[nodiscard]] std::size_t samples() const;
+  [[nodiscard]] std::size_t samples() const {
+    return records.empty() ? 0 : records.back().first + records.back().size();
+  }
+  /// Returns a member of the records, a value a sample, one record after the other.
+  template <typename Member>
+  [[nodiscard]] Eigen::VectorXd All(Member member) const {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(samples()));
+    auto end = all.begin();
+    for (const ScaledRecord& record : records) {
+      end = std::ranges::copy(std::invoke(member, record), end).out;
+    }
+    return all;
+  }
 };
 
-/// Every sample that counts does so alike.
-/// The normal loads of the records are those of the options, else the means of their columns over
-/// what counts; they are a series where the largest is beyond the smallest by more than the
-/// threshold. A column that varies by more than its threshold enters the law where that knows such
-/// loads. A reading below 0 is lift-off, of Dahl's own law a load from the other side.
+/// Makes the records of a fit from prepared ones, of which samples beyond any lag that the options
+/// allow are left out (motion.h). Every sample that counts does so alike. There are the columns
+/// that the terms need (accelerations, speeds), and covariates: each less the middle of its range
+/// in the record, so that the offset of the force keeps its meaning; literally where there are no
+/// offsets. The normal loads of the records are those of the options, else the means of their
+/// columns over what counts; they are a series where the largest is beyond the smallest by more
+/// than the threshold. A column that varies by more than its threshold enters the law where that
+/// knows such loads. A reading below 0 is lift-off, of Dahl's own law a load from the other side.
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
-///   more than 1e100, and for loads that are not one for all or one a record, and positive
-ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options);
-
-/// Adds the columns that the options' terms need beyond those of every fit (accelerations,
-/// speeds), and covariates: each less the middle of its range in the
-/// record, so that the offset of the force keeps its meaning; literally where there are no offsets.
-/// @throws InvalidArgument where a record has no covariate that is fitted, or it never changes, or
-///   is the force in other units
-void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
-                ScaledRecords& data);
+///   more than 1e100, for loads that are not one for all or one a record, and positive, and where a
+///   record has no covariate that is fitted, or it never changes, or is the force in other units
+/// @param fit   of the records, where there is one: they turn between samples as they do in it
+/// @param with  options for whose terms there are columns; null: for these
+ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options,
+                    const FitResult* fit = nullptr, const FitOptions* with = nullptr);
 
 /// A stroke: from the record's beginning or a reversal to the next reversal or its end.
 struct Stroke {

@@ -7,9 +7,8 @@
 namespace mindahl::identification {
 namespace {
 
-// Default bounds, in units of the data (half ranges of displacement and force), lie far outside
-// what a record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a
-// straight line.
+// Default bounds, in units of the data (half ranges of displacement and force), far outside what a
+// record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a line.
 constexpr double kLowestStiffness = 1e-6;
 constexpr double kHighestStiffness = 1e9;
 constexpr double kLowestSlipForce = 1e-3;
@@ -47,9 +46,16 @@ constexpr TermScale kLengthUnit{.length = 1};
 constexpr TermScale kStiffnessUnit{.force = 1, .length = -1};
 constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
-/// Makes one of the four factors of a ripple.
-constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning) {
-  return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .is_linear = true};
+/// Makes the factor of a force in addition to the contact's.
+constexpr Term Factor(std::string_view name, std::string_view unit, std::string_view meaning,
+                      TermScale powers, bool is_never_negative = false) {
+  return {.name = name,
+          .unit = unit,
+          .meaning = meaning,
+          .powers = powers,
+          .is_linear = true,
+          .needs_time = powers.time != 0,
+          .is_never_negative = is_never_negative};
 }
 
 /// Makes a change of the slip force over the position or time.
@@ -61,10 +67,10 @@ constexpr Term SlipChange(std::string_view name, std::string_view meaning) {
           .start = 0.0};
 }
 
-/// Makes an exponent of the speed, of a force that another term scales.
+/// Makes an exponent of the speed, of a force that another term scales: its bounds are ends of the
+/// theory's where it shapes no column.
 constexpr Term Exponent(std::string_view name, std::string_view meaning, std::string_view needs,
-                        double lowest, bool lowest_is_of_theory, bool highest_is_of_theory = false,
-                        std::string_view shapes = {}) {
+                        double lowest, std::string_view shapes = {}) {
   return {.name = name,
           .meaning = meaning,
           .lowest = lowest,
@@ -73,8 +79,8 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
           .start = 0.5,
           .shapes = shapes,
           .needs = needs,
-          .lowest_is_of_theory = lowest_is_of_theory,
-          .highest_is_of_theory = highest_is_of_theory};
+          .lowest_is_of_theory = shapes.empty(),
+          .highest_is_of_theory = shapes.empty()};
 }
 
 constexpr std::array kTermRows = {
@@ -117,29 +123,15 @@ constexpr std::array kTermRows = {
                     "it falls; slip_force is their mean",
          .lowest = -kLargestAsymmetry,
          .highest = kLargestAsymmetry},
-    Term{.name = "plateau_slope",
-         .unit = "N/m",
-         .meaning = "slope of an additional force slope·δ",
-         .powers = kStiffnessUnit,
-         .is_linear = true},
-    Term{.name = "viscous",
-         .unit = "N s/m",
-         .meaning = "C of an additional force C·dδ/dt",
-         .powers = {.force = 1, .length = -1, .time = 1},
-         .is_linear = true,
-         .needs_time = true,
-         .is_never_negative = true},
+    Factor("plateau_slope", "N/m", "slope of an additional force slope·δ", kStiffnessUnit),
+    Factor("viscous", "N s/m", "C of an additional force C·dδ/dt",
+           {.force = 1, .length = -1, .time = 1}, /*is_never_negative=*/true),
     Exponent("speed_exponent",
              "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
              "the viscous force",
-             "viscous", kLeastSpeedExponent, false, false, "viscous"),
-    Term{.name = "inertia",
-         .unit = "kg",
-         .meaning = "M of an additional force M·d²δ/dt²",
-         .powers = {.force = 1, .length = -1, .time = 2},
-         .is_linear = true,
-         .needs_time = true,
-         .is_never_negative = true},
+             "viscous", kLeastSpeedExponent, "viscous"),
+    Factor("inertia", "kg", "M of an additional force M·d²δ/dt²",
+           {.force = 1, .length = -1, .time = 2}, /*is_never_negative=*/true),
     SlipChange("slip_slope",
                "m₁ of a slip force Tc(1 + m₁ξ + m₂ξ²), ξ the position, ±1 at the ends of the "
                "widest stroke"),
@@ -153,8 +145,7 @@ constexpr std::array kTermRows = {
          .start = 0.3,
          .needs = "slip_speed_exponent",
          .highest_is_of_theory = true},
-    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", kLeastSlipSpeedExponent, true,
-             true),
+    Exponent("slip_speed_exponent", "m, likewise", "slip_speed", kLeastSlipSpeedExponent),
     SlipChange(
         "slip_trend",
         "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 at its "
@@ -169,13 +160,10 @@ constexpr std::array kTermRows = {
          .needs = "drag_exponent",
          .lowest_is_of_theory = true,
          .highest_is_of_theory = true},
-    Exponent("drag_exponent", "m, likewise", "drag_fraction", kLeastSpeedExponent, true, true),
-    Term{.name = "plateau_curvature",
-         .unit = "N/m²",
-         .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
-                    "stroke",
-         .powers = {.force = 1, .length = -2},
-         .is_linear = true},
+    Exponent("drag_exponent", "m, likewise", "drag_fraction", kLeastSpeedExponent),
+    Factor("plateau_curvature", "N/m²",
+           "factor of an additional force in proportion to δ², δ from the middle of the stroke",
+           {.force = 1, .length = -2}),
     Term{.name = "ripple_period",
          .unit = "m",
          .meaning = "λ of a periodic force A±cos(2πδ/λ + φ±), one phase for each direction",
@@ -186,12 +174,14 @@ constexpr std::array kTermRows = {
          .start = 0.0,
          .shapes = "ripple_",
          .needs = "ripple_cosine_up"},
-    FactorOfRipple("ripple_cosine_up",
-                   "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
-                   "first record"),
-    FactorOfRipple("ripple_sine_up", "factor of sin(2πδ/λ), likewise"),
-    FactorOfRipple("ripple_cosine_down", "factor of cos(2πδ/λ) where the displacement falls"),
-    FactorOfRipple("ripple_sine_down", "factor of sin(2πδ/λ), likewise"),
+    Factor("ripple_cosine_up", "N",
+           "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the first "
+           "record",
+           kForceUnit),
+    Factor("ripple_sine_up", "N", "factor of sin(2πδ/λ), likewise", kForceUnit),
+    Factor("ripple_cosine_down", "N", "factor of cos(2πδ/λ) where the displacement falls",
+           kForceUnit),
+    Factor("ripple_sine_down", "N", "factor of sin(2πδ/λ), likewise", kForceUnit),
     Term{.name = "lag",
          .unit = "s",
          .meaning = "delay of the contact's force after the displacement, negative if before it; "
@@ -278,6 +268,12 @@ constexpr auto kTermsOfDisplacement = [] {
   return terms;
 }();
 
+template <typename Row>
+const Row* FindNamed(std::span<const Row> rows, std::string_view name) {
+  const auto row = std::ranges::find(rows, name, &Row::name);
+  return row == rows.end() ? nullptr : &*row;
+}
+
 }  // namespace
 
 double Term::scale(const TermUnits& units) const {
@@ -301,9 +297,7 @@ const Term& TermOf(TermId id, loop::Channel response) {
 }
 
 const Term* FindTerm(std::string_view name, loop::Channel response) {
-  const std::span<const Term> terms = Terms(response);
-  const auto term = std::ranges::find(terms, name, &Term::name);
-  return term == terms.end() ? nullptr : &*term;
+  return FindNamed(Terms(response), name);
 }
 
 std::span<const TermGroup> TermGroups() {
@@ -335,11 +329,7 @@ std::span<const TermGroup> TermGroups() {
   return groups;
 }
 
-const TermGroup* FindTermGroup(std::string_view name) {
-  const std::span<const TermGroup> groups = TermGroups();
-  const auto group = std::ranges::find(groups, name, &TermGroup::name);
-  return group == groups.end() ? nullptr : &*group;
-}
+const TermGroup* FindTermGroup(std::string_view name) { return FindNamed(TermGroups(), name); }
 
 bool LeadsGroup(const Term& term) {
   return std::ranges::any_of(
@@ -360,13 +350,10 @@ const Term* TermOfParameter(std::string_view parameter) {
 
 std::string NameOfCovariate(std::string_view column) {
   std::string name = "covariate_";
-  name += column;
-  std::ranges::replace_if(
-      name,
-      [](char letter) {
-        return std::string_view(" \t=:;,.[](){}'\"").find(letter) != std::string_view::npos;
-      },
-      '_');
+  for (const char letter : column) {
+    const bool is_quoted = std::string_view(" \t=:;,.[](){}'\"").find(letter) != column.npos;
+    name += is_quoted ? '_' : letter;
+  }
   return name;
 }
 

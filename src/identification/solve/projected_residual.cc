@@ -6,55 +6,42 @@
 #include <limits>
 
 namespace mindahl::identification {
-namespace {
-
-/// A column as the problem's functions write it.
-std::span<double> Writable(Eigen::VectorXd& column) {
-  return {column.data(), static_cast<std::size_t>(column.size())};
-}
-
-}  // namespace
 
 ProjectedResidual::ProjectedResidual(const Problem& problem)
-    : problem_(problem), response_(problem) {
-  for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
+    : problem_(problem),
+      response_(problem),
+      theta_(problem.parameters.Theta()),
+      weight_(problem.data->All(&ScaledRecord::root_weight)),
+      response_values_(weight_.size()) {
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_tied = parameter.has_prior() || parameter.bounded_by_user;
     if (parameter.term->is_linear && !is_tied) {
       theta_[p] = 0.0;
+      eliminated_.push_back(p);
       continue;
     }
-    theta_[p] = std::clamp(theta_[p], parameter.lower, parameter.upper);
+    theta_[p] = parameter.Clamp(theta_[p]);
     searched_.push_back(p);
   }
-  response_values_.resize(static_cast<Eigen::Index>(problem.size()));
   FactoriseColumns();
 }
 
+Eigen::VectorXd ProjectedResidual::SearchedOf(std::span<const double> theta) const {
+  Eigen::VectorXd u(std::ssize(searched_));
+  for (Eigen::Index j = 0; j < u.size(); ++j) {
+    u[j] = Searched(j).Clamp(theta[searched_[static_cast<std::size_t>(j)]]);
+  }
+  return u;
+}
+
 void ProjectedResidual::FactoriseColumns() {
-  const ScaledRecords& data = *problem_.data;
-  const auto size = static_cast<Eigen::Index>(problem_.size());
-  std::vector<std::size_t> eliminated;
-  for (std::size_t p = 0; p < theta_.size(); ++p) {
-    const Parameter& parameter = problem_.parameters[p];
-    const bool is_searched = std::ranges::find(searched_, p) != searched_.end();
-    if (parameter.term->is_linear && !parameter.fixed && !is_searched) eliminated.push_back(p);
-  }
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated));
-  weight_.resize(size);
-  measured_.resize(size);
-  for (const ScaledRecord& record : data.records) {
-    std::ranges::copy(record.root_weight, record.Of(Writable(weight_)).begin());
-    std::ranges::copy(record.response(), record.Of(Writable(measured_)).begin());
-  }
-  for (std::size_t p = 0; p < theta_.size(); ++p) {
-    if (!problem_.parameters[p].term->is_linear || theta_[p] == 0) continue;
-    AddColumn(problem_, p, theta_, -theta_[p], Writable(measured_));
-  }
-  for (std::size_t k = 0; k < eliminated.size(); ++k) {
-    double* const column = columns.col(static_cast<Eigen::Index>(k)).data();
-    AddColumn(problem_, eliminated[k], theta_, 1.0, {column, problem_.size()});
+  const Eigen::Index size = weight_.size();
+  measured_ = problem_.data->All(&ScaledRecord::response);
+  AddLinearTerms(problem_, theta_, -1.0, measured_);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated_));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    AddColumn(problem_, eliminated_[static_cast<std::size_t>(k)], theta_, 1.0, columns.col(k));
   }
   measured_.array() *= weight_.array();
   columns.array().colwise() *= weight_.array();
@@ -63,7 +50,7 @@ void ProjectedResidual::FactoriseColumns() {
   linear_.clear();
   basis_.resize(size, 0);
   triangle_.resize(0, 0);
-  if (!eliminated.empty()) {
+  if (!eliminated_.empty()) {
     const Eigen::VectorXd norms = columns.colwise().norm();
     columns.array().rowwise() /= norms.transpose().array().max(std::numeric_limits<double>::min());
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
@@ -74,7 +61,7 @@ void ProjectedResidual::FactoriseColumns() {
     for (Eigen::Index k = 0; k < rank; ++k) {
       const Eigen::Index column = factors.colsPermutation().indices()[k];
       triangle_.col(k) *= norms[column];
-      linear_.push_back(eliminated[static_cast<std::size_t>(column)]);
+      linear_.push_back(eliminated_[static_cast<std::size_t>(column)]);
     }
   }
   measured_products_ = ProjectOut(measured_);
@@ -103,14 +90,14 @@ std::vector<double> ProjectedResidual::Theta() const {
   return theta;
 }
 
-void ProjectedResidual::MoveTo(std::span<const double> u) {
+void ProjectedResidual::MoveTo(const Eigen::VectorXd& u) {
   bool columns_move = false;
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    const std::size_t p = searched_[j];
-    const Term& term = *problem_.parameters[p].term;
+  for (Eigen::Index j = 0; j < u.size(); ++j) {
+    const Term& term = *Searched(j).term;
+    double& theta = theta_[searched_[static_cast<std::size_t>(j)]];
     const bool has_column = term.is_linear || !term.shapes.empty();
-    columns_move = columns_move || (has_column && theta_[p] != u[j]);
-    theta_[p] = u[j];
+    columns_move = columns_move || (has_column && theta != u[j]);
+    theta = u[j];
   }
   if (columns_move) FactoriseColumns();
 }
@@ -132,14 +119,14 @@ double ProjectedResidual::ScaleTo(std::span<const double> theta) {
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
-double ProjectedResidual::Evaluate(std::span<const double> u) {
+double ProjectedResidual::Evaluate(const Eigen::VectorXd& u) {
   MoveTo(u);
-  response_.Evaluate(theta_, Writable(response_values_));
+  response_.Evaluate(theta_, SpanOf(response_values_));
   return Regress(theta_);
 }
 
 double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
-  response_.Evaluate(theta, Writable(response_values_));
+  response_.Evaluate(theta, SpanOf(response_values_));
   double cost = Regress(theta);
   const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
   const Parameter& parameter = problem_.parameters[of_scale];
@@ -147,36 +134,32 @@ double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
     const double best = response_values_.dot(measured_) / response_values_.squaredNorm();
     if (!(best > 0)) return std::numeric_limits<double>::infinity();
     const double log_scale = is_forced() ? theta[kSlipForce] - std::log(best) : std::log(best);
-    theta[of_scale] = std::clamp(log_scale, parameter.lower, parameter.upper);
+    theta[of_scale] = parameter.Clamp(log_scale);
     cost = ScaleTo(theta);
   }
   SolveLinear(theta);
   return cost;
 }
 
-double ProjectedResidual::Linearise(std::span<const double> u) {
+double ProjectedResidual::Linearise(const Eigen::VectorXd& u) {
   MoveTo(u);
-  const auto count = static_cast<Eigen::Index>(u.size());
-  derivatives_.resize(response_values_.size(), count);
-  DifferentiateResponse(problem_, theta_, response_, searched_, Writable(response_values_),
-                        {derivatives_.data(), static_cast<std::size_t>(derivatives_.size())});
+  DifferentiateResponse(problem_, theta_, response_, searched_, response_values_, derivatives_);
   const double cost = Regress(theta_);
   derivatives_ *= scale_;
   const std::vector<double> theta = Theta();
-  double* column = derivatives_.data();
-  for (const std::size_t p : searched_) {
-    AddDerivativeOfColumns(problem_, p, theta, {column, problem_.size()});
-    column += problem_.size();
+  for (Eigen::Index j = 0; j < derivatives_.cols(); ++j) {
+    AddDerivativeOfColumns(problem_, searched_[static_cast<std::size_t>(j)], theta,
+                           derivatives_.col(j));
   }
   derivatives_.array().colwise() *= weight_.array();
   derivatives_ -= basis_ * (basis_.transpose() * derivatives_);
   gradient_ = derivatives_.transpose() * residual_;
   normal_ = derivatives_.transpose() * derivatives_;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const Parameter& parameter = Searched(static_cast<std::size_t>(j));
+  for (Eigen::Index j = 0; j < derivatives_.cols(); ++j) {
+    const Parameter& parameter = Searched(j);
     const double weight = parameter.prior_root_weight * parameter.prior_root_weight;
     normal_(j, j) += weight;
-    gradient_[j] += weight * (u[static_cast<std::size_t>(j)] - parameter.prior_theta);
+    gradient_[j] += weight * (u[j] - parameter.prior_theta);
   }
   return cost;
 }

@@ -21,15 +21,17 @@ class ProjectedResidual {
 
   /// Positions of what is searched among the parameters.
   [[nodiscard]] std::span<const std::size_t> searched() const { return searched_; }
-  [[nodiscard]] const Parameter& Searched(std::size_t j) const {
-    return problem_.parameters[searched_[j]];
+  [[nodiscard]] const Parameter& Searched(Eigen::Index j) const {
+    return problem_.parameters[searched_[static_cast<std::size_t>(j)]];
   }
+  /// Returns what is searched of θ, moved into its bounds.
+  [[nodiscard]] Eigen::VectorXd SearchedOf(std::span<const double> theta) const;
   [[nodiscard]] const Problem& problem() const { return problem_; }
 
   /// Returns the sum of the squared weighted residuals; infinity where they are not finite.
-  double Evaluate(std::span<const double> u);
+  double Evaluate(const Eigen::VectorXd& u);
   /// The same, and forms the normal equations.
-  double Linearise(std::span<const double> u);
+  double Linearise(const Eigen::VectorXd& u);
   /// JᵀJ and Jᵀr of the last Linearise().
   [[nodiscard]] const Eigen::MatrixXd& normal() const { return normal_; }
   [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
@@ -43,7 +45,7 @@ class ProjectedResidual {
   double EvaluateFreely(std::span<double> theta);
 
  private:
-  void MoveTo(std::span<const double> u);
+  void MoveTo(const Eigen::VectorXd& u);
   void FactoriseColumns();
   Eigen::VectorXd ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
   void SolveLinear(std::span<double> theta) const;
@@ -54,8 +56,9 @@ class ProjectedResidual {
   const Problem& problem_;
   Response response_;
   std::vector<std::size_t> searched_;
-  std::vector<double> theta_;        // of what is not eliminated
-  std::vector<std::size_t> linear_;  // what is, as far as their columns are independent
+  std::vector<double> theta_;  // of what is not eliminated
+  std::vector<std::size_t> eliminated_;
+  std::vector<std::size_t> linear_;  // of these, those whose columns are independent
   Eigen::VectorXd weight_;
   Eigen::MatrixXd basis_;     // of the weighted columns
   Eigen::MatrixXd triangle_;  // R of these

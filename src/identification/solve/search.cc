@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -45,149 +44,128 @@ struct Look {
   std::vector<double> theta = {};
 };
 
-/// The cost over the plane of reach and α.
-class Plane {
- public:
-  Plane(const Problem& problem, Solver& solver) : problem_(problem), solver_(solver) {}
-
-  /// Looks from θ of a look, whose α, origins and terms stay, and keeps it where it is better.
-  void KeepBetter(Look& best, Look look) {
-    // Without slip nothing depends on the reach: of equals the last, nearest to slip.
-    constexpr double kEqual = 1 + 1e-9;
-    At(look);
-    if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
+/// Returns the largest |excitation| from where the contacts are unloaded.
+double FarthestFrom(const Problem& problem, std::span<const double> theta) {
+  double farthest = 0.0;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const auto [low, high] = ExtremesOf(problem.data->records[r].excitation());
+    const double unloaded = theta[problem.parameters.PositionOfOrigin(r)];
+    farthest = std::max({farthest, high - unloaded, unloaded - low});
   }
+  return farthest;
+}
 
-  /// The best looks of those that compete: of one α, or where α is given of one third of the
-  /// reaches; those that lead anywhere. Contacts are unloaded at their first samples.
-  std::vector<Look> Best() {
-    std::vector<double> theta;
-    for (const Parameter& of : problem_.parameters) {
-      theta.push_back(of.fixed ? of.theta : std::clamp(of.theta, of.lower, of.upper));
-    }
-    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-      const std::size_t origin = problem_.parameters.PositionOfOrigin(r);
-      if (problem_.parameters[origin].fixed) continue;
-      theta[origin] = problem_.data->records[r].excitation().front();
-    }
-    constexpr std::size_t kThirds = 3;
-    constexpr double kNear = 4.0;
-    const Parameters& parameters = problem_.parameters;
-    const Parameter& shape = parameters[kShape];
-    const Parameter& rig = parameters[kRig];
-    const std::vector<double> ratios =
-        rig.is_open() ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
-    const std::vector<StartRow>& rows = RowsOf(problem_.data->is_forced());
-    std::vector<Look> best(rows.size());
-    const bool is_given = shape.fixed || shape.started_by_user;
-    const std::size_t count = is_given ? 1 : rows.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::vector<double>& reaches = rows[k].reaches;
-      theta[kShape] = is_given ? shape.theta : std::clamp(rows[k].shape, shape.lower, shape.upper);
-      // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
-      // minimum, the others are looked at around it.
-      const double seen = k == 0 ? 0.0 : best[0].reach;
-      for (std::size_t i = 0; i < reaches.size(); ++i) {
-        if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
-        Look& group = best[is_given ? i * kThirds / reaches.size() : k];
-        for (const double ratio : ratios) {
-          KeepBetter(group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
-        }
-      }
-    }
-    std::erase_if(best, [](const Look& look) { return !std::isfinite(look.cost); });
-    return best;
+/// Writes the cost of a look, and what is found there into its θ.
+void LookAt(Solver& solver, Look& look) {
+  const Problem& problem = solver.problem();
+  const Parameters& parameters = problem.parameters;
+  const Parameter& stiffness = parameters[kStiffness];
+  const Parameter& slip_force = parameters[kSlipForce];
+  const Parameter& rig = parameters[kRig];
+  const Parameter& exponent = parameters[kLoadExponent];
+  std::vector<double>& theta = look.theta;
+  const bool is_forced = problem.data->is_forced();
+  // Elements in parallel make it α.
+  if (!exponent.fixed) theta[kLoadExponent] = exponent.Clamp(std::min(theta[kShape], 1.0));
+  // The ratios of a contact of Tc = 1, or where that is held of its own.
+  const double log_slip_force = slip_force.fixed ? slip_force.theta : 0.0;
+  theta[kSlipForce] = log_slip_force;
+  double log_stiffness = std::log(look.reach);
+  double log_rig = 0.0;
+  if (is_forced && !slip_force.fixed) {
+    theta[kSlipForce] = std::log(FarthestFrom(problem, theta) / look.reach);
   }
-
-  /// Tries a look with lags, with which a loop looks like one of another shape.
-  void LookForLag(Look& best) {
-    const Parameter& lag = problem_.parameters[RowOf(TermId::kLag)];
-    const Look without = best;
-    for (const double share : {-1.0, -0.6, -0.3, -0.15, -0.06, 0.06, 0.15, 0.3, 0.6, 1.0}) {
-      if (lag.fixed) return;
-      Look look = without;
-      look.theta[RowOf(TermId::kLag)] = share * (share < 0 ? -lag.lower : lag.upper);
-      KeepBetter(best, std::move(look));
-    }
+  if (parameters.has_rig()) {
+    // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k.
+    const double compliance =
+        rig.is_open() ? look.rig_ratio / (look.reach * (1 + look.rig_ratio)) : std::exp(-rig.theta);
+    log_stiffness = -std::log(std::max(1 / look.reach - compliance, 0.1 / look.reach));
+    log_rig = -std::log(compliance);
   }
-
- private:
-  /// Writes the cost of a look, and what is found there into its θ.
-  void At(Look& look) {
-    const Parameters& parameters = problem_.parameters;
-    const Parameter& stiffness = parameters[kStiffness];
-    const Parameter& slip_force = parameters[kSlipForce];
-    const Parameter& rig = parameters[kRig];
-    const Parameter& exponent = parameters[kLoadExponent];
-    std::vector<double>& theta = look.theta;
-    const bool is_forced = problem_.data->is_forced();
-    if (!exponent.fixed) {
-      // Elements in parallel make it α.
-      theta[kLoadExponent] =
-          std::clamp(std::min(theta[kShape], 1.0), exponent.lower, exponent.upper);
-    }
-    // The ratios of a contact of Tc = 1, or where that is held of its own.
-    const double log_slip_force = slip_force.fixed ? slip_force.theta : 0.0;
-    theta[kSlipForce] = log_slip_force;
-    double log_stiffness = std::log(look.reach);
-    double log_rig = 0.0;
-    if (is_forced && !slip_force.fixed) {
-      theta[kSlipForce] = std::log(FarthestFrom(theta) / look.reach);
-    }
-    if (parameters.has_rig()) {
-      // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k.
-      const double compliance = rig.is_open() ? look.rig_ratio / (look.reach * (1 + look.rig_ratio))
-                                              : std::exp(-rig.theta);
-      log_stiffness = -std::log(std::max(1 / look.reach - compliance, 0.1 / look.reach));
-      log_rig = -std::log(compliance);
-    }
-    if (!is_forced) {
-      theta[kStiffness] = log_stiffness + log_slip_force;
-      theta[kRig] = log_rig + log_slip_force;
-    }
-    look.cost = solver_.CostAt(theta);
-    if (!std::isfinite(look.cost)) return;
-    if (!is_forced) {
-      // Parameters that are held keep their values; the others follow from the ratios of the look.
-      if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
-      theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
-      theta[kRig] = rig.is_open() ? log_rig + theta[kSlipForce] : rig.theta;
-    }
-    for (const std::size_t p : parameters.free()) {
-      const Parameter& parameter = parameters[p];
-      const double inside = std::clamp(theta[p], parameter.lower, parameter.upper);
-      // Columns far beyond their bounds make a straight line of any loop.
-      if (parameter.term->is_linear && inside != theta[p]) look.cost = kNoCost;
-      theta[p] = inside;
-    }
+  if (!is_forced) {
+    theta[kStiffness] = log_stiffness + log_slip_force;
+    theta[kRig] = log_rig + log_slip_force;
   }
-
-  /// Largest |excitation| from where the contacts are unloaded.
-  [[nodiscard]] double FarthestFrom(std::span<const double> theta) const {
-    double farthest = 0.0;
-    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-      const auto [low, high] = ExtremesOf(problem_.data->records[r].excitation());
-      const double unloaded = theta[problem_.parameters.PositionOfOrigin(r)];
-      farthest = std::max({farthest, high - unloaded, unloaded - low});
-    }
-    return farthest;
+  look.cost = solver.CostAt(theta);
+  if (!std::isfinite(look.cost)) return;
+  if (!is_forced) {
+    // Parameters that are held keep their values; the others follow from the ratios of the look.
+    if (stiffness.fixed && !slip_force.fixed) theta[kSlipForce] = stiffness.theta - log_stiffness;
+    theta[kStiffness] = stiffness.fixed ? stiffness.theta : log_stiffness + theta[kSlipForce];
+    theta[kRig] = rig.is_open() ? log_rig + theta[kSlipForce] : rig.theta;
   }
+  for (const std::size_t p : parameters.free()) {
+    const double inside = parameters[p].Clamp(theta[p]);
+    // Columns far beyond their bounds make a straight line of any loop.
+    if (parameters[p].term->is_linear && inside != theta[p]) look.cost = kNoCost;
+    theta[p] = inside;
+  }
+}
 
-  const Problem& problem_;
-  Solver& solver_;
-};
+/// Looks from θ of a look, whose α, origins and terms stay, and keeps it where it is better.
+void KeepBetter(Solver& solver, Look& best, Look look) {
+  // Without slip nothing depends on the reach: of equals the last, nearest to slip.
+  constexpr double kEqual = 1 + 1e-9;
+  LookAt(solver, look);
+  if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
+}
 
-/// Returns the options' own start, where it leaves nothing to be looked for.
-std::optional<std::vector<double>> GivenStart(const Parameters& parameters,
-                                              const FitOptions& options) {
-  if (options.start.empty()) return std::nullopt;
-  std::vector<double> theta;
-  for (const Parameter& parameter : parameters) {
-    theta.push_back(parameter.theta);
-    const bool has_start = parameter.term->is_linear || parameter.term->start;
-    if (!parameter.fixed && !parameter.started_by_user && !has_start) return std::nullopt;
+/// Returns θ with contacts that are unloaded at their first samples, where that is not held.
+std::vector<double> UnloadedAtFirst(const Problem& problem, std::vector<double> theta) {
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const std::size_t origin = problem.parameters.PositionOfOrigin(r);
+    if (problem.parameters[origin].fixed) continue;
+    theta[origin] = problem.data->records[r].excitation().front();
   }
   return theta;
+}
+
+/// Returns the best looks of those that compete: of one α, or where α is given of one third of the
+/// reaches; those that lead anywhere.
+std::vector<Look> BestLooks(Solver& solver) {
+  constexpr std::size_t kThirds = 3;
+  constexpr double kNear = 4.0;
+  const Problem& problem = solver.problem();
+  const Parameter& shape = problem.parameters[kShape];
+  std::vector<double> theta = problem.parameters.Theta();
+  for (const std::size_t p : problem.parameters.free()) {
+    theta[p] = problem.parameters[p].Clamp(theta[p]);
+  }
+  theta = UnloadedAtFirst(problem, std::move(theta));
+  const std::vector<double> ratios =
+      problem.parameters[kRig].is_open() ? std::vector{0.1, 0.5, 2.0, 10.0} : std::vector{1.0};
+  const std::vector<StartRow>& rows = RowsOf(problem.data->is_forced());
+  std::vector<Look> best(rows.size());
+  const bool is_given = shape.fixed || shape.started_by_user;
+  const std::size_t count = is_given ? 1 : rows.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::vector<double>& reaches = rows[k].reaches;
+    theta[kShape] = is_given ? shape.theta : shape.Clamp(rows[k].shape);
+    // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
+    // minimum, the others are looked at around it.
+    const double seen = k == 0 ? 0.0 : best[0].reach;
+    for (std::size_t i = 0; i < reaches.size(); ++i) {
+      if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
+      Look& group = best[is_given ? i * kThirds / reaches.size() : k];
+      for (const double ratio : ratios) {
+        KeepBetter(solver, group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
+      }
+    }
+  }
+  std::erase_if(best, [](const Look& look) { return !std::isfinite(look.cost); });
+  return best;
+}
+
+/// Tries a look with lags, with which a loop looks like one of another shape.
+void LookForLag(Solver& solver, Look& best) {
+  constexpr std::size_t kLag = RowOf(TermId::kLag);
+  const Parameter& lag = solver.problem().parameters[kLag];
+  if (lag.fixed) return;
+  Look look = best;
+  for (const double share : {-1.0, -0.6, -0.3, -0.15, -0.06, 0.06, 0.15, 0.3, 0.6, 1.0}) {
+    look.theta[kLag] = share * (share < 0 ? -lag.lower : lag.upper);
+    KeepBetter(solver, best, look);
+  }
 }
 
 /// Returns the thinned records, which have the history of the whole; all samples where fewer than
@@ -234,14 +212,9 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
   }
   // Virgin contacts unloaded at their first samples, where the search has led away from these: a
   // thinned record of much noise may have.
-  std::vector<double> at_first = solution;
-  bool has_moved = false;
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const std::size_t origin = parameters.PositionOfOrigin(r);
-    if (parameters[origin].fixed) continue;
-    at_first[origin] = problem.data->records[r].excitation().front();
-    has_moved = has_moved || std::abs(solution[origin] - at_first[origin]) > kAway;
-  }
+  std::vector<double> at_first = UnloadedAtFirst(problem, solution);
+  const bool has_moved = !std::ranges::equal(
+      solution, at_first, [](double now, double first) { return std::abs(now - first) <= kAway; });
   if (has_moved) neighbours.push_back(at_first);
   // Slip that begins just before the ends, of a loop that does not slip.
   const bool may_be_sharp =
@@ -265,8 +238,13 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options) {
   const Problem& problem = candidate.problem;
   candidate.starts.clear();
-  if (auto given = GivenStart(problem.parameters, options)) {
-    candidate.starts.push_back(std::move(*given));
+  // A start from the options that leaves nothing to be looked for.
+  const bool is_given = std::ranges::all_of(problem.parameters.free(), [&](std::size_t p) {
+    const Parameter& parameter = problem.parameters[p];
+    return parameter.started_by_user || parameter.term->is_linear || parameter.term->start;
+  });
+  if (!options.start.empty() && is_given) {
+    candidate.starts.push_back(problem.parameters.Theta());
     return 0.0;
   }
   constexpr std::size_t kStartsAmongKinks = 4;
@@ -285,9 +263,8 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   Problem thin = problem;
   thin.data = &data;
   Solver solver(thin);
-  Plane plane(thin, solver);
-  std::vector<Look> looks = plane.Best();
-  for (Look& look : looks) plane.LookForLag(look);
+  std::vector<Look> looks = BestLooks(solver);
+  for (Look& look : looks) LookForLag(solver, look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "identification/solve/projected_residual.h"
@@ -26,15 +27,6 @@ constexpr double kRefused = 1e150;
 /// Jᵀr: what a least-squares solver learns of them, at a cost that does not grow with n. The first
 /// P rows are what the Jacobian's columns explain of the residual, the last is what they do not.
 struct CompressedResidual {
-  CompressedResidual() = default;
-
-  /// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
-  /// @param gradient  Jᵀr
-  /// @param cost      rᵀr
-  /// @param frozen    1 for a coordinate whose column counts as 0
-  CompressedResidual(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost,
-                     std::span<const unsigned char> frozen);
-
   /// Returns by how much a Gauss–Newton step lowers the linearised sum of squares.
   [[nodiscard]] double Explained() const {
     return residual.head(residual.size() - 1).squaredNorm();
@@ -44,40 +36,35 @@ struct CompressedResidual {
   Eigen::MatrixXd jacobian;
 };
 
-// JᵀJ of unit columns = PᵀLDLᵀP; the rows are √D·Lᵀ·P, and those of the residual √D⁻¹·L⁻¹·P·Jᵀr.
-CompressedResidual::CompressedResidual(const Eigen::MatrixXd& normal,
-                                       const Eigen::VectorXd& gradient, double cost,
-                                       std::span<const unsigned char> frozen) {
+/// JᵀJ of unit columns = PᵀLDLᵀP; the rows are √D·Lᵀ·P, and those of the residual √D⁻¹·L⁻¹·P·Jᵀr.
+/// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
+/// @param gradient  Jᵀr
+/// @param cost      rᵀr
+/// @param frozen    true of a coordinate whose column counts as 0
+CompressedResidual Compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient,
+                            double cost, const Eigen::ArrayX<bool>& frozen) {
   // Pivots of unit columns below it are rounding: the direction has no effect.
   constexpr double kNoEffect = 1e-15;
   const Eigen::Index count = gradient.size();
-  Eigen::VectorXd norms(count);
-  Eigen::VectorXd slopes = gradient;
-  Eigen::MatrixXd correlation = normal;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const bool is_frozen = frozen[static_cast<std::size_t>(j)] != 0;
-    norms[j] = !is_frozen && normal(j, j) > 0 ? std::sqrt(normal(j, j)) : 0.0;
-    const double inverse = norms[j] > 0 ? 1 / norms[j] : 0.0;
-    slopes[j] *= inverse;
-    correlation.row(j) *= inverse;
-    correlation.col(j) *= inverse;
-  }
-  const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
-  const Eigen::VectorXd pivots = factors.vectorD();
+  const Eigen::ArrayXd squares = normal.diagonal();
+  const Eigen::VectorXd norms = (!frozen && squares > 0).select(squares.sqrt(), 0.0);
+  const Eigen::VectorXd inverse = (norms.array() > 0).select(norms.cwiseInverse(), 0.0);
+  const Eigen::LDLT<Eigen::MatrixXd> factors(inverse.asDiagonal() *
+                                             (normal * inverse.asDiagonal()));
+  const Eigen::ArrayXd pivots = factors.vectorD();
+  const Eigen::ArrayXd roots = (pivots > kNoEffect).select(pivots.sqrt(), 0.0);
   const Eigen::PermutationMatrix<Eigen::Dynamic> permutation(factors.transpositionsP());
-  Eigen::VectorXd explained = permutation * slopes;
+  Eigen::VectorXd explained = permutation * gradient.cwiseProduct(inverse);
   factors.matrixL().solveInPlace(explained);
   const Eigen::MatrixXd scales = norms.asDiagonal();
   const Eigen::MatrixXd permuted = permutation * scales;
-  jacobian.setZero(count + 1, count);
-  jacobian.topRows(count) = factors.matrixU() * permuted;
-  residual.setZero(count + 1);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double root = pivots[k] > kNoEffect ? std::sqrt(pivots[k]) : 0.0;
-    jacobian.row(k) *= root;
-    residual[k] = root > 0 ? explained[k] / root : 0.0;
-  }
-  residual[count] = std::sqrt(std::max(cost - residual.squaredNorm(), 0.0));
+  CompressedResidual compressed{.residual = Eigen::VectorXd::Zero(count + 1),
+                                .jacobian = Eigen::MatrixXd::Zero(count + 1, count)};
+  compressed.jacobian.topRows(count) = factors.matrixU() * permuted;
+  compressed.jacobian.topRows(count).array().colwise() *= roots;
+  compressed.residual.head(count) = (roots > 0).select(explained.array() / roots, 0.0);
+  compressed.residual[count] = std::sqrt(std::max(cost - compressed.residual.squaredNorm(), 0.0));
+  return compressed;
 }
 
 /// ceres::TinySolver with what the searches of one start share.
@@ -94,12 +81,19 @@ class TinySearch {
   TinySearch(ProjectedResidual& residual, const SolverOptions& options)
       : residual_(residual),
         options_(options),
-        count_(static_cast<Eigen::Index>(residual.searched().size())),
-        floor_(static_cast<double>(residual.problem().data->counted) * kRoundingRms * kRoundingRms),
-        clamped_(residual.searched().size()) {}
+        count_(std::ssize(residual.searched())),
+        lower_(count_),
+        upper_(count_),
+        floor_(static_cast<double>(residual.problem().data->counted) * kRoundingRms *
+               kRoundingRms) {
+    for (Eigen::Index j = 0; j < count_; ++j) {
+      lower_[j] = residual.Searched(j).lower;
+      upper_[j] = residual.Searched(j).upper;
+    }
+  }
 
   /// Searches from u, which it moves.
-  void Run(std::span<double> u);
+  void Run(Eigen::VectorXd& u);
 
   // Results of the last run.
   [[nodiscard]] double cost() const { return at_.cost; }
@@ -149,11 +143,11 @@ class TinySearch {
   struct Point {
     Eigen::VectorXd u;
     double cost = 0.0;
-    bool is_linearised = false;
   };
 
-  [[nodiscard]] Point Within(const Eigen::VectorXd& x) const;
-  [[nodiscard]] bool IsTooLong(const Eigen::VectorXd& u) const;
+  [[nodiscard]] Point Within(const Eigen::VectorXd& x) const {
+    return {.u = x.cwiseMax(lower_).cwiseMin(upper_)};
+  }
   double Try(const Eigen::VectorXd& x);
   void Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
               Eigen::Map<Eigen::MatrixXd> columns);
@@ -162,38 +156,18 @@ class TinySearch {
   ProjectedResidual& residual_;
   const SolverOptions& options_;
   Eigen::Index count_;
+  Eigen::VectorXd lower_;
+  Eigen::VectorXd upper_;
   double floor_;  // of the cost: below it residuals are rounding errors
   Tiny tiny_;
-  Point at_;     // the accepted one
-  Point trial_;  // the last evaluated one
-  std::vector<unsigned char> clamped_;
+  Point at_;                       // the accepted one
+  Point trial_;                    // the last evaluated one
   CompressedResidual compressed_;  // at the accepted one
   bool is_last_ = false;           // is the next accepted step the last one?
   bool is_slow_ = false;
   int accepted_ = 0;          // points
   double cost_before_ = 0.0;  // kSlowSteps accepted steps ago
 };
-
-TinySearch::Point TinySearch::Within(const Eigen::VectorXd& x) const {
-  Point point{x};
-  for (Eigen::Index j = 0; j < count_; ++j) {
-    const Parameter& searched = residual_.Searched(static_cast<std::size_t>(j));
-    point.u[j] = std::clamp(x[j], searched.lower, searched.upper);
-  }
-  return point;
-}
-
-/// True if a step from the accepted point to u leads out of what its linearisation says.
-bool TinySearch::IsTooLong(const Eigen::VectorXd& u) const {
-  constexpr double kLongest = 1.5;
-  constexpr double kOfBounds = 0.25;  // of their distance
-  for (Eigen::Index j = 0; j < count_; ++j) {
-    const Parameter& searched = residual_.Searched(static_cast<std::size_t>(j));
-    const double longest = std::min(kLongest, kOfBounds * (searched.upper - searched.lower));
-    if (std::abs(u[j] - at_.u[j]) > longest) return true;
-  }
-  return false;
-}
 
 void TinySearch::CountAccepted() {
   constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
@@ -207,44 +181,35 @@ void TinySearch::CountAccepted() {
 
 /// @returns the root of the cost, or of one by which a trial is refused
 double TinySearch::Try(const Eigen::VectorXd& x) {
-  if (!x.allFinite() || IsTooLong(Within(x).u)) return kRefused;
+  // A longer step leads out of what the linearisation of the accepted point says.
+  constexpr double kLongest = 1.5;
+  constexpr double kOfBounds = 0.25;  // of their distance
+  const Eigen::VectorXd longest = (kOfBounds * (upper_ - lower_)).cwiseMin(kLongest);
+  const Eigen::VectorXd step = Within(x).u - at_.u;
+  if (!x.allFinite() || (step.cwiseAbs().array() > longest.array()).any()) return kRefused;
   trial_ = Within(x);
-  const std::span<const double> u(trial_.u.data(), clamped_.size());
-  trial_.is_linearised = !is_last_;
-  if (!is_last_) {
-    trial_.cost = residual_.Linearise(u);
-  } else {
-    trial_.cost = residual_.Evaluate(u);
-    // A last step that does not lower the cost could have gained next to nothing: it is refused by
-    // less than the function tolerance, which ends the search.
-    if (!(trial_.cost < at_.cost)) {
-      return std::sqrt(at_.cost * (1 + options_.function_tolerance / 2));
-    }
+  trial_.cost = is_last_ ? residual_.Evaluate(trial_.u) : residual_.Linearise(trial_.u);
+  // A last step that does not lower the cost could have gained next to nothing: it is refused by
+  // less than the function tolerance, which ends the search.
+  if (is_last_ && !(trial_.cost < at_.cost)) {
+    return std::sqrt(at_.cost * (1 + options_.function_tolerance / 2));
   }
   return std::isfinite(trial_.cost) ? std::sqrt(trial_.cost) : kRefused;
 }
 
 void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
                         Eigen::Map<Eigen::MatrixXd> columns) {
-  if (accepted_ == 0) {
-    trial_ = Within(x);
-    trial_.cost = residual_.Linearise({trial_.u.data(), clamped_.size()});
-    trial_.is_linearised = true;
-  }
   at_ = trial_;
   columns.setZero();
   rows[count_] = std::sqrt(at_.cost);
   tiny_.options.function_tolerance = options_.function_tolerance * at_.cost;
-  if (!at_.is_linearised) return;  // that was the last step: a zero gradient ends the search
-  for (Eigen::Index j = 0; j < count_; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    const Parameter& searched = residual_.Searched(k);
-    const double slope = residual_.gradient()[j];
-    const bool below = x[j] <= searched.lower && (x[j] < searched.lower || slope > 0);
-    const bool above = x[j] >= searched.upper && (x[j] > searched.upper || slope < 0);
-    clamped_[k] = below || above ? 1 : 0;
-  }
-  compressed_ = CompressedResidual(residual_.normal(), residual_.gradient(), at_.cost, clamped_);
+  if (is_last_) return;  // a zero gradient ends the search
+  const Eigen::ArrayXd below = (lower_ - x).array();
+  const Eigen::ArrayXd above = (x - upper_).array();
+  const auto slope = residual_.gradient().array();
+  compressed_ =
+      Compress(residual_.normal(), residual_.gradient(), at_.cost,
+               below > 0 || (below == 0 && slope > 0) || above > 0 || (above == 0 && slope < 0));
   CountAccepted();
   const double left = compressed_.Explained();
   if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
@@ -253,7 +218,7 @@ void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> ro
   columns = compressed_.jacobian;
 }
 
-void TinySearch::Run(std::span<double> u) {
+void TinySearch::Run(Eigen::VectorXd& u) {
   constexpr double kLargestRadius = 1e3;
   // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
   tiny_.options.gradient_tolerance = std::numeric_limits<double>::min();
@@ -263,18 +228,13 @@ void TinySearch::Run(std::span<double> u) {
   tiny_.options.initial_trust_region_radius = kLargestRadius;
   is_last_ = is_slow_ = false;
   accepted_ = 0;
-  Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(u.data(), count_);
+  Eigen::VectorXd point = u;
+  trial_ = Within(point);
+  trial_.cost = residual_.Linearise(trial_.u);
   tiny_.Solve(Function{this}, &point);
   // A step that ends the search is not accepted by a call.
   if (at_.u != Within(point).u) at_ = trial_;
-  std::ranges::copy(at_.u, u.begin());
-}
-
-bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    if (SideOf(residual.Searched(j), u[j]) != BoundSide::kInside) return true;
-  }
-  return false;
+  u = at_.u;
 }
 
 }  // namespace
@@ -297,19 +257,16 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
                   Solution& solution) {
   std::vector<double>& theta = solution.theta;
   ceres::Problem ceres_problem;
-  std::vector<double*> blocks;
-  for (const std::size_t p : UnprojectedResidual::BlocksOf(problem)) blocks.push_back(&theta[p]);
-  ceres_problem.AddResidualBlock(new UnprojectedResidual(problem, scale, LossOf(loss)), nullptr,
-                                 blocks);
-  for (const std::size_t p : problem.parameters.with_prior()) {
-    const Parameter& parameter = problem.parameters[p];
-    ceres_problem.AddResidualBlock(
-        new ceres::NormalPrior(Eigen::MatrixXd::Constant(1, 1, parameter.prior_root_weight / scale),
-                               Eigen::VectorXd::Constant(1, parameter.prior_theta)),
-        nullptr, &theta[p]);
-  }
+  const auto block_of = [&](std::size_t p) { return &theta[p]; };
+  AddResidualBlock(problem, scale, LossOf(loss), block_of, ceres_problem);
   for (std::size_t p = 0; p < theta.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
+    if (parameter.has_prior()) {
+      const Eigen::MatrixXd root =
+          Eigen::MatrixXd::Constant(1, 1, parameter.prior_root_weight / scale);
+      const Eigen::VectorXd prior = Eigen::VectorXd::Constant(1, parameter.prior_theta);
+      ceres_problem.AddResidualBlock(new ceres::NormalPrior(root, prior), nullptr, &theta[p]);
+    }
     BoundBlock(&theta[p], parameter.fixed, parameter.lower, parameter.upper, ceres_problem);
   }
   ceres::Solver::Options search;
@@ -337,7 +294,7 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 
 /// Moves u to the minimum.
 /// @returns the solution but for θ
-Solution Solver::SearchFrom(std::span<double> u, const SolverOptions& options) {
+Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
   Solution solution;
   SolverReport& report = solution.report;
   report.solver = "tiny_solver";
@@ -359,9 +316,13 @@ Solution Solver::SearchFrom(std::span<double> u, const SolverOptions& options) {
                    : solution.converged ? "The search came to its end."
                                         : "The solver made its maximum number of iterations.";
   bool is_evaluated = search.IsEvaluated();
+  const auto side_of = [&](Eigen::Index j) { return SideOf(residual_.Searched(j), u[j]); };
+  const bool is_at_bound =
+      std::ranges::any_of(std::views::iota(Eigen::Index{0}, u.size()),
+                          [&](Eigen::Index j) { return side_of(j) != BoundSide::kInside; });
   const int left = options.max_iterations - report.iterations;
   if (!options.is_rough && left > 0 && std::isfinite(cost) &&
-      (!solution.converged || search.is_slow() || IsAtBound(residual_, u))) {
+      (!solution.converged || search.is_slow() || is_at_bound)) {
     constexpr int kOfOneSearch = 10;  // iterations by Ceres
     SolverOptions within_bounds = options;
     within_bounds.max_iterations = kOfOneSearch * left;
@@ -370,19 +331,18 @@ Solution Solver::SearchFrom(std::span<double> u, const SolverOptions& options) {
     SolveByCeres(residual_.problem(), Loss::kNone, 1.0, within_bounds, within);
     report = within.report;
     solution.converged = solution.converged || within.converged;
-    std::vector<double> point;
-    for (const std::size_t p : residual_.searched()) point.push_back(within.theta[p]);
+    const Eigen::VectorXd point = residual_.SearchedOf(within.theta);
     const double cost_within = residual_.Evaluate(point);
     is_evaluated = cost_within < cost;
     if (is_evaluated) {
-      std::ranges::copy(point, u.begin());
+      u = point;
       cost = cost_within;
     }
   }
-  for (std::size_t j = 0; j < u.size(); ++j) {  // at a bound is on it
-    const Parameter& searched = residual_.Searched(j);
-    const BoundSide side = SideOf(searched, u[j]);
+  for (Eigen::Index j = 0; j < u.size(); ++j) {  // at a bound is on it
+    const BoundSide side = side_of(j);
     if (side == BoundSide::kInside) continue;
+    const Parameter& searched = residual_.Searched(j);
     const double bound = side == BoundSide::kLower ? searched.lower : searched.upper;
     is_evaluated = std::exchange(u[j], bound) == bound && is_evaluated;
   }
@@ -392,13 +352,9 @@ Solution Solver::SearchFrom(std::span<double> u, const SolverOptions& options) {
 }
 
 Solution Solver::Solve(std::span<const double> start, const SolverOptions& options) {
-  const Parameters& parameters = residual_.problem().parameters;
   Solution solution;
-  std::vector<double> u;
-  for (const std::size_t p : residual_.searched()) {
-    u.push_back(std::clamp(start[p], parameters[p].lower, parameters[p].upper));
-  }
-  if (u.empty()) {
+  Eigen::VectorXd u = residual_.SearchedOf(start);
+  if (u.size() == 0) {
     solution.sum_of_squares = residual_.Evaluate(u);
     solution.converged = true;
     solution.report.solver = "none";

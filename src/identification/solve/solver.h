@@ -52,6 +52,7 @@ class Solver {
   /// @param problem  must outlive this; neither it nor the weights of its samples may change
   explicit Solver(const Problem& problem) : residual_(problem) {}
 
+  [[nodiscard]] const Problem& problem() const { return residual_.problem(); }
   /// Least cost with the ratios of θ, and all that is linear eliminated (projected_residual.h).
   double CostAt(std::span<double> theta) { return residual_.EvaluateFreely(theta); }
 
@@ -59,7 +60,7 @@ class Solver {
   Solution Solve(std::span<const double> start, const SolverOptions& options);
 
  private:
-  Solution SearchFrom(std::span<double> u, const SolverOptions& options);
+  Solution SearchFrom(Eigen::VectorXd& u, const SolverOptions& options);
 
   ProjectedResidual residual_;
 };

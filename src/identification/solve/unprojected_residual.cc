@@ -1,10 +1,12 @@
 #include "identification/solve/unprojected_residual.h"
 
+#include <ceres/cost_function.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
+#include <vector>
 
 #include "mindahl/core/error.h"
 
@@ -23,64 +25,76 @@ double ApplyLoss(const ceres::LossFunction& loss, double& residual) {
   return slope;
 }
 
-bool AreFinite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
+class UnprojectedResidual final : public ceres::CostFunction {
+ public:
+  /// @param blocks  positions of the parameters
+  UnprojectedResidual(const Problem& problem, double unit,
+                      std::unique_ptr<ceres::LossFunction> loss, std::vector<std::size_t> blocks)
+      : problem_(problem),
+        unit_(unit),
+        loss_(std::move(loss)),
+        blocks_(std::move(blocks)),
+        response_(problem) {
+    set_num_residuals(static_cast<int>(problem.size()));
+    mutable_parameter_block_sizes()->assign(blocks_.size(), 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    std::vector<double> theta = problem_.parameters.Theta();
+    std::vector<std::size_t> wanted;
+    std::vector<double*> columns;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      theta[blocks_[b]] = *parameters[b];
+      if (jacobians == nullptr || jacobians[b] == nullptr) continue;
+      wanted.push_back(blocks_[b]);
+      columns.push_back(jacobians[b]);
+    }
+    Linearization at;
+    try {
+      at = LinearizeAt(problem_, theta, wanted, response_);
+    } catch (const InvalidArgument&) {  // no law: exp(θ) is 0 or infinite
+      return false;
+    }
+    // Ceres would print what is no number.
+    if (!at.residual.allFinite() || !at.jacobian.allFinite()) return false;
+    at.residual /= unit_;
+    Eigen::ArrayXd slopes = Eigen::ArrayXd::Constant(at.residual.size(), 1 / unit_);
+    for (Eigen::Index i = 0; loss_ && i < slopes.size(); ++i) {
+      slopes[i] *= ApplyLoss(*loss_, at.residual[i]);
+    }
+    at.jacobian.array().colwise() *= slopes;
+    std::ranges::copy(at.residual, residuals);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      std::ranges::copy(at.jacobian.col(static_cast<Eigen::Index>(k)), columns[k]);
+    }
+    return true;
+  }
+
+ private:
+  const Problem& problem_;
+  double unit_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  std::vector<std::size_t> blocks_;
+  mutable Response response_;  // an evaluation reuses the buffers of the last one
+};
 
 }  // namespace
 
-UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit,
-                                         std::unique_ptr<ceres::LossFunction> loss)
-    : problem_(problem),
-      unit_(unit),
-      loss_(std::move(loss)),
-      blocks_(BlocksOf(problem)),
-      response_(problem) {
-  set_num_residuals(static_cast<int>(problem.size()));
-  mutable_parameter_block_sizes()->assign(blocks_.size(), 1);
-}
-
-std::vector<std::size_t> UnprojectedResidual::BlocksOf(const Problem& problem) {
+void AddResidualBlock(const Problem& problem, double unit,
+                      std::unique_ptr<ceres::LossFunction> loss,
+                      const std::function<double*(std::size_t)>& block_of, ceres::Problem& to) {
   const Parameters& parameters = problem.parameters;
-  std::vector<std::size_t> blocks;
+  std::vector<std::size_t> positions;
+  std::vector<double*> blocks;
   for (const std::size_t p : parameters.reported()) {
     const bool is_origin = p == parameters.PositionOfOrigin(parameters[p].record);
-    if (problem.is_virgin() || !is_origin) blocks.push_back(p);
+    if (!problem.is_virgin() && is_origin) continue;
+    positions.push_back(p);
+    blocks.push_back(block_of(p));
   }
-  return blocks;
-}
-
-bool UnprojectedResidual::Evaluate(double const* const* parameters, double* residuals,
-                                   double** jacobians) const {
-  std::vector<double> theta;
-  for (const Parameter& parameter : problem_.parameters) theta.push_back(parameter.theta);
-  std::vector<std::size_t> wanted;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    theta[blocks_[b]] = *parameters[b];
-    if (jacobians != nullptr && jacobians[b] != nullptr) wanted.push_back(blocks_[b]);
-  }
-  const std::span<double> residual(residuals, problem_.size());
-  std::vector<double> jacobian(wanted.size() * residual.size());
-  try {
-    Differentiate(problem_, theta, response_, wanted, residual, jacobian);
-  } catch (const InvalidArgument&) {  // no law: exp(θ) is 0 or infinite
-    return false;
-  }
-  // Ceres would print what is no number.
-  if (!AreFinite(residual) || !AreFinite(jacobian)) return false;
-  std::vector<double> slope(residual.size(), 1 / unit_);
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    residual[i] /= unit_;
-    if (loss_) slope[i] *= ApplyLoss(*loss_, residual[i]);
-  }
-  auto column = jacobian.begin();
-  for (std::size_t b = 0; jacobians != nullptr && b < blocks_.size(); ++b) {
-    if (jacobians[b] == nullptr) continue;
-    std::ranges::transform(slope, std::span(column, residual.size()), jacobians[b],
-                           std::multiplies());
-    column += std::ssize(residual);
-  }
-  return true;
+  to.AddResidualBlock(new UnprojectedResidual(problem, unit, std::move(loss), std::move(positions)),
+                      nullptr, blocks);
 }
 
 void BoundBlock(double* theta, bool fixed, double lower, double upper, ceres::Problem& problem) {
