@@ -326,7 +326,9 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     if (!TryFit(request, records, tried, found)) continue;
     const std::optional<double> after = found.adequacy.misfit_over_half_gap;
     if (!after || *after > (1 - options.thresholds.advised_gain) * *before) continue;
-    if (LosesSlipForce(fit, found, tried)) continue;
+    const bool changes_law =
+        fit.law_choice && fit.law_choice->preferred == fit.model && found.model != fit.model;
+    if (changes_law || LosesSlipForce(fit, found, tried)) continue;
     // A rig that cannot be told from the law is to be measured.
     const bool is_confounded =
         name == "rig_stiffness" && fit.FindFinding("shape_or_rig") != nullptr;
