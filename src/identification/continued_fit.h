@@ -30,17 +30,23 @@ struct SampleRange {
   std::size_t end = 0;
 };
 
-/// Fits at Depth::kEstimate without some samples, which still make history.
-/// @returns empty where it does not converge, has too few samples or a rig beyond what it can see
-inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out,
-                                           std::span<const loop::RecordView> records,
-                                           FitOptions options) {
+/// Leaves samples out of a fit; they still make history.
+inline void HoldOut(std::span<const SampleRange> held_out,
+                    std::span<const loop::RecordView> records, FitOptions& options) {
   std::vector<std::vector<bool>>& masks = options.preparation.held_out;
   masks.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) masks[r].resize(records[r].size());
   for (const auto& [record, begin, end] : held_out) {
     for (std::size_t i = begin; i < end; ++i) masks[record][i] = true;
   }
+}
+
+/// Fits at Depth::kEstimate without some samples.
+/// @returns empty where it does not converge, has too few samples or a rig beyond what it can see
+inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out,
+                                           std::span<const loop::RecordView> records,
+                                           FitOptions options) {
+  HoldOut(held_out, records, options);
   try {
     FitResult fit = Fitter(std::move(options)).Fit(records, Depth::kEstimate);
     return fit.converged ? std::optional(std::move(fit)) : std::nullopt;

@@ -90,8 +90,7 @@ void MeasureBesideKnownForces(const FitOptions& options, const ScaledRecords& da
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const auto& [problem, starts, solution] = solved.best;
   const ScaledRecords& data = *problem.data;
-  Eigen::VectorXd residuals =
-      Predict(problem, solution.theta) - data.All(&ScaledRecord::response);
+  Eigen::VectorXd residuals = Predict(problem, solution.theta) - data.All(&ScaledRecord::response);
   const std::span<double> of_all = SpanOf(residuals);
   const bool is_forced = data.is_forced();
   const double unit = is_forced ? data.length : data.force * attempt.prepared.force_sense;
@@ -187,7 +186,29 @@ bool TellsTheLaw(const FitResult& result) {
                              &ParameterEstimate::is_known);
 }
 
-/// Fits once, with the slip force wherever the search finds it.
+/// Returns the first strokes of records that begin on their later loop and fit worse than the rest:
+/// their last turn, which is not recorded, may have been elsewhere than the later ones.
+std::vector<SampleRange> FirstStrokesAside(const ScaledRecords& data, const FitResult& result,
+                                           double larger_rms) {
+  std::vector<SampleRange> aside;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    if (record.CountTurns() < 2 || !record.BeginsOnLoop()) continue;
+    const std::size_t turn = record.reversals.front();
+    const Eigen::Map<const Eigen::VectorXd> residual(result.records[r].residual.data(),
+                                                     std::ssize(result.records[r].residual));
+    const Eigen::ArrayXd squares = residual.array().square();
+    const auto first = static_cast<Eigen::Index>(turn);
+    const double of_rest = squares.tail(squares.size() - first).mean();
+    if (squares.head(first).mean() > larger_rms * larger_rms * of_rest) {
+      aside.push_back({r, 0, turn});
+    }
+  }
+  return aside;
+}
+
+/// Fits once, with the slip force wherever the search finds it; where a first stroke does not fit,
+/// without it, if then all is described.
 FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions options) {
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
   std::shared_ptr<const loop::DrawnReadings>& drawn = options.preparation.drawn;
@@ -216,7 +237,16 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
   const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
   if (is_inadequate && !result.prefers_other_law()) result.law_choice.reset();
   Append(result.findings, FindOtherLaw(result.law_choice));
-  return result;
+  if (options.initial_state || result.adequacy.verdict == AdequacyVerdict::kAdequate ||
+      result.prefers_other_law() || !options.preparation.held_out.empty()) {
+    return result;
+  }
+  const std::vector<SampleRange> aside =
+      FirstStrokesAside(data, result, options.thresholds.larger_rms);
+  if (aside.empty()) return result;
+  HoldOut(aside, records, options);
+  FitResult without = FitOnce(records, depth, std::move(options));
+  return without.adequacy.verdict == AdequacyVerdict::kAdequate ? without : result;
 }
 
 /// Fits, and once more where the slip force runs away from what was measured.

@@ -29,7 +29,8 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   });
 }
 
-/// Returns what lies before the first turns of records that begin under a force of unknown past.
+/// Returns what lies before the first turns of records of unknown past: they begin under a force,
+/// or on their later loop.
 /// @param dahl  fit of Dahl's own law
 std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
                                      const ScaledRecords& data, const FitResult& fit,
@@ -39,18 +40,20 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
   const double noise = std::sqrt(WhiteVariance(fit)) / data.response_unit();
   std::vector<SampleRange> past;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const std::vector<double>& force = data.records[r].force;
-    const std::vector<std::size_t>& reversals = data.records[r].reversals;
-    const auto [low, high] = std::ranges::minmax(force);
+    const ScaledRecord& record = data.records[r];
+    if (record.reversals.empty()) continue;
+    const auto [low, high] = std::ranges::minmax(record.force);
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
-    if (reversals.empty() || !(std::abs(force.front() - (low + high) / 2) > unloaded)) continue;
     // Whatever forces are added to its own, a virgin contact may be unloaded at the first sample.
     const ParameterEstimate* const origin = dahl.FindOf(dahl.records[r], "displacement_offset");
     const bool begins_unloaded =
-        dahl.initial_state == InitialState::kVirgin && origin != nullptr &&
-        std::abs(records[r].displacement.front() - origin->value) * dahl.law.tangential_stiffness <=
-            kUnloaded * dahl.law.slip_force;
-    if (!begins_unloaded) past.push_back({r, 0, reversals.front()});
+        std::abs(record.force.front() - (low + high) / 2) <= unloaded ||
+        (dahl.initial_state == InitialState::kVirgin && origin != nullptr &&
+         std::abs(records[r].displacement.front() - origin->value) *
+                 dahl.law.tangential_stiffness <=
+             kUnloaded * dahl.law.slip_force);
+    if (!begins_unloaded || record.reversals.size() < 2 || record.BeginsOnLoop())
+      past.push_back({r, 0, record.reversals.front()});
   }
   return past;
 }

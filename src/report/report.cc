@@ -61,7 +61,11 @@ void CountSamples(Report& report) {
       if (fit.counts[i] == 0 && !std::ranges::binary_search(fit.glitches, i)) others.push_back(i);
     }
     LeaveOut(fit.glitches, file, "faults", report.left_out);
-    LeaveOut(others, file, is_selected ? "selection" : "lag", report.left_out);
+    LeaveOut(others, file,
+             is_selected              ? "selection"
+             : report.fit.Find("lag") ? "lag"
+                                      : "unknown past",
+             report.left_out);
     if (file.left_out.count > 0) {
       report.left_out.push_back({file.name, file.left_out.count, 0, 0, "not whole"});
     }

@@ -157,6 +157,36 @@ TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
   }
 }
 
+TEST(LawChoice, IsNotMadeByALoopThatIsCutWhereItsForceIsZero) {
+  // There Dahl's contact is unloaded. The first stroke of Masing's began at a turn that is not
+  // recorded, 3 % nearer than the later ones: it is left out.
+  const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);
+  History displacement = cycles;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] *= 1 + 0.1 * static_cast<double>(i) / static_cast<double>(cycles.size());
+  }
+  const Record whole =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+  std::size_t zero = 7 * kPerCycle / 4;
+  while (whole.force[zero] < 0) ++zero;
+  const FitResult fit = FitOne(Noisy(From(whole, zero)));
+  EXPECT_EQ(fit.model->name, "mindlin-dahl");
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_FALSE(fit.law_choice->decided());
+  EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_NEAR(fit.law.tangential_stiffness / kMindlin.tangential_stiffness, 1.0, 0.01);
+  EXPECT_EQ(fit.records[0].counts.front(), 0);
+  EXPECT_EQ(fit.records[0].counts[fit.records[0].reversals.front()], 1);
+  // Half a cycle, which no whole stroke follows.
+  Record part = Noisy(From(whole, zero));
+  for (auto* const column : {&part.time, &part.displacement, &part.force}) {
+    column->resize(std::min<std::size_t>(column->size(), kPerCycle / 2));
+  }
+  const FitResult half = FitOne(part);
+  EXPECT_FALSE(half.law_choice && half.law_choice->decided());
+  EXPECT_FALSE(half.Find("alpha")->is_known());
+}
+
 TEST(LawChoice, IsNotMadeByAFirstStrokeOfUnknownPast) {
   // Dahl's own law without its first rows, and Masing's after cycles of half the amplitude, both
   // begin under a force: Dahl's law fits either, and both are given.

@@ -232,6 +232,22 @@ std::size_t ScaledRecord::CountTurns() const {
       std::ranges::count_if(reversals, [&](std::size_t turn) { return turn + 1 < end; }));
 }
 
+bool ScaledRecord::BeginsOnLoop() const {
+  constexpr double kBeside = 0.1;        // of half the range of the displacement
+  constexpr double kBesideForce = 0.25;  // of half the range of the force
+  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const auto [least, greatest] = std::ranges::minmax(force);
+  for (std::size_t i = reversals[0]; i <= reversals[1]; ++i) {
+    const double off = displacement.front() + displacement[i] - lowest - highest;
+    const double off_force = force.front() + force[i] - least - greatest;
+    if (std::abs(off) < kBeside * (highest - lowest) / 2 &&
+        std::abs(off_force) < kBesideForce * (greatest - least) / 2) {
+      return true;
+    }
+  }
+  return false;
+}
+
 ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
   ScaledRecord some = *this;
   const auto take = [&](auto& column, const auto& all) {

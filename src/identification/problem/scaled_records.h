@@ -46,6 +46,9 @@ struct ScaledRecord {
   /// Returns the number of turns before the last sample that counts: later ones make no history.
   [[nodiscard]] std::size_t CountTurns() const;
   [[nodiscard]] bool Turns() const { return CountTurns() > 0; }
+  /// True if a record that turns begins on its later loop, as an excerpt of a steady loop does,
+  /// also one from where its force is zero: the next stroke runs through the opposite place.
+  [[nodiscard]] bool BeginsOnLoop() const;
 
   /// Returns the record with these of its samples, in all of its columns; `reversals` as they were.
   [[nodiscard]] ScaledRecord At(std::span<const std::size_t> samples) const;
