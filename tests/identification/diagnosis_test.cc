@@ -170,5 +170,17 @@ TEST(UnknownPast, IsOfALoopWithinALargerOneThatIsNotRecorded) {
   }
 }
 
+TEST(FewPlaces, LeaveTheShapeUnknownAlsoWhereNoneRepeats) {
+  constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+  const History displacement =
+      Cycling(Wave::kSine, 2 * GrossSlipDisplacement(kLaw), 2.5, /*samples a cycle*/ 8);
+  const loop::Record whole =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  const FitResult fit = FitOne(From(whole, 8));
+  EXPECT_TRUE(fit.FindFinding("not_identifiable", "few_places"));
+  EXPECT_FALSE(fit.Find("sigma")->is_known());
+  EXPECT_FALSE(fit.Find("alpha")->is_known());
+}
+
 }  // namespace
 }  // namespace mindahl::identification::diagnosis_test

@@ -94,7 +94,7 @@ struct Thresholds {
   /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
   /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
   double undecided = 10.0;
-  /// [places of the loop] If every cycle samples fewer, σ and α are not identifiable. Four each
+  /// [places of the loop] If samples lie in fewer, σ and α are not identifiable. Four each
   /// for σ, α, Tc and for where the motion turns between them.
   double fewest_places = 16.0;
   /// [of X] Closer samples are at one place. The force differs by a hundredth of σX at most.

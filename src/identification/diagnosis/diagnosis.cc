@@ -49,9 +49,8 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
   const Thresholds& thresholds = fitted.thresholds();
   const bool is_virgin_masing =
       problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
-  Finding finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
   bool is_told = false;  // by one record
-  bool is_assumed = false;
+  bool is_cut = false;   // inside a stroke: its slope is that of there, not of the contact at rest
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     const std::size_t origin = problem.parameters.PositionOfOrigin(r);
@@ -59,24 +58,23 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
     const double half = (highest - lowest) / 2;
     const double inside = std::min(unloaded - lowest, highest - unloaded);
-    const double away = std::abs(record.excitation().front() - unloaded);
+    const double front = record.excitation().front();
+    const double away = std::abs(front - unloaded);
     if (is_virgin_masing && inside < kNearEnd * half && away > kFar * half &&
         !loop::HasSlipped(result.records[r].facts)) {
-      finding.kind = "elsewhere";
-      return finding;
+      return Finding{
+          .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
     }
     const bool starts_unloaded = problem.is_virgin() && !problem.parameters[origin].assumed &&
                                  away <= thresholds.starts_unloaded * half;
     is_told =
         is_told || record.CountTurns() >= 2 || IsOneCycle(record, thresholds) || starts_unloaded;
-    is_assumed = is_assumed || problem.parameters[origin].assumed;
+    is_cut = is_cut || problem.parameters[origin].assumed ||
+             std::min(front - lowest, highest - front) > thresholds.starts_inside * 2 * half;
   }
   if (is_told) return std::nullopt;
-  if (is_assumed) {
-    // A stroke that was cut has the slope of where it was, not of the contact at rest.
-    finding.parameters = {"sigma", "alpha", "slip_force"};
-    finding.kind = "one_stroke";
-  }
+  Finding finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
+  if (is_cut) finding.parameters.insert(finding.parameters.begin(), "sigma");
   return finding;
 }
 
@@ -130,10 +128,10 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
   return std::nullopt;
 }
 
-/// Samples of few places of the loop, the same in every cycle: what lies between, no cycle shows.
+/// Samples at few places of the loop, however many they are: no cycle shows what lies between them,
+/// nor where it turned.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
   std::size_t places = 0;
-  std::size_t samples = 0;
   for (const ScaledRecord& record : problem.data->records) {
     const std::span<const double> excitation = record.excitation();
     const std::vector<double> direction = DirectionsOf(excitation, record.reversals);
@@ -141,7 +139,6 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (record.counts[i] == 0) continue;
       ways[direction[i] > 0 ? 1 : 0].push_back(excitation[i]);
-      ++samples;
     }
     for (std::vector<double>& way : ways) {
       std::ranges::sort(way);
@@ -151,11 +148,7 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
       places += way.size() - std::ranges::unique(way, are_same).size();
     }
   }
-  // Few samples alone make wide intervals; these make narrow ones.
-  constexpr std::size_t kAgain = 2;
-  if (static_cast<double>(places) >= thresholds.fewest_places || samples < kAgain * places) {
-    return std::nullopt;
-  }
+  if (static_cast<double>(places) >= thresholds.fewest_places) return std::nullopt;
   return Finding{.code = "not_identifiable",
                  .parameters = {"sigma", "alpha"},
                  .numbers = {{"places", static_cast<double>(places)}},

@@ -42,7 +42,6 @@ void SetInterval(ParameterEstimate& estimate, Ends ends);
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, Ends ends);
 
-
 /// Returns it with each prior of a free parameter as one more reading: a row at the end.
 Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at);
 
