@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -45,25 +44,6 @@ struct TermCandidate : ConsideredTerm {
   }
 };
 
-/// Names what keeps a column out: it repeats another one, or follows the contact's force.
-/// @param before  covariates that are candidates
-std::string_view ObstacleToColumn(const loop::Covariate& column, const RecordView& record,
-                                  const FitResult& law, std::span<const std::string> before,
-                                  const Thresholds& thresholds) {
-  const auto repeats = [&](std::span<const double> other) {
-    return !other.empty() && AreOneChannel(column.values, other);
-  };
-  const auto repeats_column = [&](const loop::Covariate& other) {
-    return std::ranges::count(before, other.name) > 0 && repeats(other.values);
-  };
-  if (repeats(record.displacement) || repeats(record.force) || repeats(record.time) ||
-      std::ranges::any_of(record.covariates, repeats_column)) {
-    return "same_channel";
-  }
-  const double correlation = ColumnCorrelation(column.values, law.records.front().fitted_force);
-  return std::abs(correlation) > thresholds.follows_contact ? "confounded" : "";
-}
-
 std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
                                         const FitOptions& options, const FitResult& law) {
   std::vector<TermCandidate> candidates;
@@ -77,20 +57,33 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
     candidate.name = group.name;
     candidate.choice.terms.assign(group.terms.begin(), group.terms.end());
   }
-  std::vector<std::string> columns = options.covariates;
-  for (const loop::Covariate& column : records.front().covariates) {
-    const bool is_there = std::ranges::count(columns, column.name) > 0;
+  const RecordView& first = records.front();
+  const auto is_fitted = [&](const loop::Covariate& column) {
+    return std::ranges::count(options.covariates, column.name) > 0;
+  };
+  std::vector<std::span<const double>> channels = {first.displacement, first.force, first.time};
+  for (const loop::Covariate& column : first.covariates | std::views::filter(is_fitted)) {
+    channels.push_back(column.values);
+  }
+  for (const loop::Covariate& column : first.covariates) {
     const bool all_have_it = std::ranges::all_of(records, [&](const RecordView& record) {
       return std::ranges::count(record.covariates, column.name, &loop::Covariate::name) > 0;
     });
     const auto [lowest, highest] = ExtremesOf(column.values);
-    if (is_there || !all_have_it || !(highest > lowest)) continue;
+    if (is_fitted(column) || !all_have_it || !(highest > lowest)) continue;
     TermCandidate& candidate = candidates.emplace_back();
     candidate.name = NameOfCovariate(column.name);
-    candidate.obstacle =
-        ObstacleToColumn(column, records.front(), law, columns, options.thresholds);
-    if (candidate.obstacle == "same_channel") continue;  // reported, never fitted
-    columns.push_back(column.name);
+    if (std::ranges::any_of(channels, [&](std::span<const double> channel) {
+          return !channel.empty() && AreOneChannel(column.values, channel);
+        })) {
+      candidate.obstacle = "same_channel";  // reported, never fitted
+      continue;
+    }
+    const double correlation = ColumnCorrelation(column.values, law.records.front().fitted_force);
+    if (std::abs(correlation) > options.thresholds.follows_contact) {
+      candidate.obstacle = "confounded";
+    }
+    channels.push_back(column.values);
     candidate.choice.covariate = column.name;
   }
   return candidates;
@@ -156,34 +149,31 @@ class Selection {
   }
 
   TermSelection Run(FitResult law, MostTerms most) {
-    TermSelection result{.options = base_.options};
-    while (added_.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
+    while (base_.added.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
     }
     FitResult last;
     // Short of slip the law itself has the forms of several: together they would take its place.
     const bool may_be_common = most == MostTerms::kCommon && Slides();
     if (may_be_common && !IsNearlyWhite(base_.fit, Limits())) last = FitCommon();
-    if (!IsFitted(last) && !added_.empty()) last = FitLast(base_);
-    if (IsFitted(last)) {
+    if (!IsFitted(last) && !base_.added.empty()) last = FitLast(base_);
+    const bool is_kept = IsFitted(last);
+    for (TermCandidate& candidate : candidates_) {
+      if (!IsAdded(candidate.name)) continue;
+      candidate.added = is_kept;
+      candidate.obstacle = is_kept ? "" : "confounded";
+    }
+    if (is_kept) {
       // One term that leaves but noise rules out what leaves much more.
       const bool is_settled =
-          added_.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
+          base_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
       std::erase_if(alternatives_, [&](const TermCandidate& alternative) {
         return IsAdded(alternative.name) ||
                (is_settled && alternative.score->rms > Limits().larger_rms * last.rms);
       });
       IncludeAlternatives(alternatives_, Limits(), last);
-      result.fit = std::move(last);
-      result.options = base_.options;
-      result.added = added_;
-    } else {
-      result.fit = std::move(law);
     }
-    for (TermCandidate& candidate : candidates_) {
-      if (!IsAdded(candidate.name)) continue;
-      candidate.added = !result.added.empty();
-      candidate.obstacle = candidate.added ? "" : "confounded";
-    }
+    TermSelection result = std::move(is_kept ? base_ : law_);
+    result.fit = std::move(is_kept ? last : law);
     result.considered.assign(candidates_.begin(), candidates_.end());
     std::ranges::stable_sort(result.considered, {}, [&](const ConsideredTerm& term) {
       return std::pair(std::ranges::find(result.added, term.name), -term.gain);
@@ -203,7 +193,7 @@ class Selection {
     std::multimap<double, std::string, std::greater<>> by_gain;
     for (const TermCandidate* const candidate : tried) {
       const bool is_column = candidate->FollowsForce();
-      const Model model = FitWith(candidate->choice);
+      const TermSelection model = FitWith(candidate->choice);
       // A column that causes a part of the force reduces Tc: that alone does not rule it out.
       const std::string_view obstacle = ObstacleTo(model);
       if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit)))
@@ -217,15 +207,9 @@ class Selection {
   }
 
  private:
-  /// A model of the selection, fitted at Depth::kEstimate.
-  struct Model {
-    FitOptions options;  // as the user gives them, with terms
-    FitResult fit = {};
-  };
-
   [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
   [[nodiscard]] bool IsAdded(std::string_view name) const {
-    return std::ranges::count(added_, name) > 0;
+    return std::ranges::count(base_.added, name) > 0;
   }
   /// True of a loop that slides, a large force of the position beside it or not.
   [[nodiscard]] bool Slides() const { return loop::Slides(facts_) || loop::HasEvenGap(facts_); }
@@ -282,8 +266,8 @@ class Selection {
 
   /// Fits the present model with some more terms.
   /// @param from_here  from its solution, else from starts of its own
-  Model FitWith(const TermChoice& choice, bool from_here = true) {
-    Model model{.options = choice.AddedTo(base_.options)};
+  TermSelection FitWith(const TermChoice& choice, bool from_here = true) {
+    TermSelection model{.added = base_.added, .options = choice.AddedTo(base_.options)};
     FitOptions options = model.options;
     if (from_here) {
       options.initial_state = base_.fit.initial_state;
@@ -316,7 +300,7 @@ class Selection {
   }
 
   /// Says why a larger model does not replace the present one; empty where it does.
-  [[nodiscard]] std::string_view ObstacleTo(const Model& model) const {
+  [[nodiscard]] std::string_view ObstacleTo(const TermSelection& model) const {
     const FitResult& fit = model.fit;
     if (!IsFitted(fit) || !fit.converged) return "not_converged";
     const auto is_unphysical = [](const ParameterEstimate& estimate) {
@@ -326,26 +310,6 @@ class Selection {
     if (std::ranges::any_of(fit.parameters, is_unphysical)) return "unphysical";
     const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
     return Leaves(fit) || stops || !Gains(fit) ? "confounded" : "";
-  }
-
-  /// Moves to a model with a candidate, unless there is an obstacle, which the candidate keeps.
-  bool Add(TermCandidate& candidate, Model model) {
-    candidate.obstacle = ObstacleTo(model);
-    if (!candidate.obstacle.empty()) return false;
-    added_.push_back(candidate.name);
-    base_ = std::move(model);
-    return true;
-  }
-
-  /// Keeps the candidates that gain at least half as much as the one that is added, and their laws.
-  void KeepAlternatives(const TermCandidate& added, std::span<TermCandidate* const> others) {
-    for (const TermCandidate* const other : others) {
-      const bool is_column = !other->choice.covariate.empty();
-      const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
-      if (is_column || is_unphysical || other->gain < Limits().rival * added.gain) continue;
-      TermScore& score = *alternatives_.emplace_back(*other).score;
-      std::ranges::transform(score.law, added.score->law, score.law.begin(), std::minus());
-    }
   }
 
   /// Adds the best candidate that can be added; false where there is none.
@@ -358,23 +322,39 @@ class Selection {
     });
     std::vector<TermCandidate*> left = explaining;
     std::erase_if(left, [&](TermCandidate* candidate) { return IsRefused(*candidate); });
+    // Moves to a model with a candidate, unless there is an obstacle, which the candidate keeps.
+    const auto is_added = [&](TermCandidate& candidate, bool from_here) {
+      TermSelection model = FitWith(candidate.choice, from_here);
+      candidate.obstacle = ObstacleTo(model);
+      if (!candidate.obstacle.empty()) return false;
+      model.added.push_back(candidate.name);
+      base_ = std::move(model);
+      return true;
+    };
     constexpr double kMost = 0.5;
     while (!left.empty()) {
       TermCandidate& best = Simplest(left);
       // A search from a solution that most of the misfit has led astray may end elsewhere.
-      if (Add(best, FitWith(best.choice)) ||
-          (best.gain > kMost && Add(best, FitWith(best.choice, /*from_here=*/false)))) {
-        KeepAlternatives(best, explaining);
-        return true;
+      if (!is_added(best, true) && !(best.gain > kMost && is_added(best, false))) {
+        std::erase(left, &best);
+        continue;
       }
-      std::erase(left, &best);
+      // Candidates that gain at least half as much are alternatives, by the law beside each.
+      for (const TermCandidate* const other : explaining) {
+        const bool is_column = !other->choice.covariate.empty();
+        const bool is_unphysical = other->score->is_negative || other->obstacle == "unphysical";
+        if (is_column || is_unphysical || other->gain < Limits().rival * best.gain) continue;
+        TermScore& score = *alternatives_.emplace_back(*other).score;
+        std::ranges::transform(score.law, best.score->law, score.law.begin(), std::minus());
+      }
+      return true;
     }
     return false;
   }
 
   /// Fits a model to the end, from its solution.
   /// @returns a fit without parameters where Tc is lost
-  FitResult FitLast(const Model& model) {
+  FitResult FitLast(const TermSelection& model) {
     FitOptions options = model.options;
     StartFrom(model.fit, options);
     FitResult last = FitTo(std::move(options), Depth::kFull);
@@ -389,31 +369,25 @@ class Selection {
   /// is an obstacle or the terms that were added one after the other leave hardly more.
   /// @returns a fit without parameters where it does not move
   FitResult FitCommon() {
-    std::vector<std::string> common;
-    TermChoice all;
+    TermSelection common{.options = law_.options};
     for (const TermCandidate& candidate : candidates_) {
       if (std::ranges::count(kCommonTerms, candidate.name) == 0) continue;
-      common.push_back(candidate.name);
-      std::ranges::copy(candidate.choice.terms, std::back_inserter(all.terms));
+      common.added.push_back(candidate.name);
+      common.options = candidate.choice.AddedTo(std::move(common.options));
     }
-    FitOptions from_terms = all.AddedTo(law_.options);
-    Model model{.options = from_terms};
-    for (const std::string& term : all.terms) {
+    FitOptions from_terms = common.options;
+    for (const std::string& term :
+         common.options.terms | std::views::drop(law_.options.terms.size())) {
       const std::optional<double> start = FindTerm(term)->start;
-      if (start && !HasTerm(law_.options, term)) from_terms.start[term] = *start;
+      if (start) from_terms.start[term] = *start;
     }
-    model.fit = FitTo(std::move(from_terms), Depth::kEstimate);
-    if (!Gains(model.fit)) return {};
-    const Model added = std::exchange(base_, law_);
+    common.fit = FitTo(std::move(from_terms), Depth::kEstimate);
+    if (!Gains(common.fit)) return {};
+    TermSelection alone = std::exchange(base_, law_);
     FitResult last;
-    if (ObstacleTo(model).empty()) last = FitLast(model);
-    if (!IsFitted(last)) {
-      base_ = added;
-      return {};
-    }
-    added_ = std::move(common);
-    alternatives_.clear();
-    base_.options = std::move(model.options);
+    if (ObstacleTo(common).empty()) last = FitLast(common);
+    base_ = std::move(IsFitted(last) ? common : alone);
+    if (IsFitted(last)) alternatives_.clear();
     return last;
   }
 
@@ -422,9 +396,8 @@ class Selection {
   loop::LoopFacts facts_;                             // of the widest record
   bool law_bounds_slip_force_;                        // without terms
   std::vector<TermCandidate> candidates_;
-  Model law_;                                // without terms
-  Model base_;                               // with the terms that were added
-  std::vector<std::string> added_;           // names of these candidates, in their order
+  TermSelection law_;                        // fitted at Depth::kEstimate, without terms
+  TermSelection base_;                       // likewise, with the terms that were added
   std::vector<TermCandidate> alternatives_;  // to the first that was added of a round
 };
 
