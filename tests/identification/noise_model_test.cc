@@ -28,17 +28,6 @@ Autocorrelation EstimateNoise(const std::vector<std::vector<double>>& records,
   return EstimateAutocorrelation(scaled, residual);
 }
 
-/// The process with these coefficients and correlations ρ₀ … ρ_p.
-Autocorrelation Process(const std::vector<double>& coefficients,
-                        const std::vector<double>& correlations, double innovation_share) {
-  Autocorrelation process;
-  process.order = coefficients.size();
-  std::ranges::copy(coefficients, process.coefficients.begin());
-  std::copy_n(correlations.begin(), coefficients.size() + 1, process.correlations.begin());
-  process.innovation_share = innovation_share;
-  return process;
-}
-
 /// A series of the process, stationary from its first sample on.
 std::vector<double> Autoregressive(const std::vector<double>& coefficients, std::size_t samples,
                                    Generator& generator) {
@@ -84,7 +73,7 @@ TEST(NoiseModel, ProcessIsRecoveredWithinItsSamplingError) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       Generator generator(seed);
       const Autocorrelation noise = EstimateNoise({Autoregressive(process, kSamples, generator)});
-      ASSERT_EQ(noise.order, process.size()) << seed;
+      ASSERT_EQ(noise.coefficients.size(), process.size()) << seed;
       for (std::size_t k = 0; k < process.size(); ++k) {
         EXPECT_NEAR(noise.coefficients[k], process[k], kSurely * error) << seed;
       }
@@ -102,7 +91,7 @@ TEST(NoiseModel, WhiteNoiseHasOrderZero) {
     Generator generator(static_cast<std::uint64_t>(seed));
     const std::vector<std::vector<double>> series = {Autoregressive({}, 300, generator)};
     const Autocorrelation noise = EstimateNoise(series);
-    if (noise.order > 0) continue;
+    if (!noise.coefficients.empty()) continue;
     ++white;
     EXPECT_EQ(noise.innovation_share, 1.0);
     EXPECT_EQ(noise.SquaredCorrelations(), 1.0);
@@ -113,14 +102,16 @@ TEST(NoiseModel, WhiteNoiseHasOrderZero) {
 TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
   constexpr double kForgotten = 1e-7;  // what the sum over lags leaves off, relative
   for (const double rho : {-0.6, 0.3, 0.9, 0.99}) {
-    const Autocorrelation noise = Process({rho}, {1.0, rho}, 1 - rho * rho);
+    const Autocorrelation noise = testing::FirstOrder(rho);
     const double exact = (1 + rho * rho) / (1 - rho * rho);
     EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact) << rho;
   }
   double exact = 1.0;
   const std::vector<double> rho = SecondOrderCorrelations(1.2, -0.5, 400);
   for (std::size_t k = 1; k < rho.size(); ++k) exact += 2 * rho[k] * rho[k];
-  const Autocorrelation noise = Process({1.2, -0.5}, rho, SecondOrderShare(1.2, -0.5));
+  const Autocorrelation noise{.coefficients = {1.2, -0.5},
+                              .correlations = {rho[0], rho[1], rho[2]},
+                              .innovation_share = SecondOrderShare(1.2, -0.5)};
   EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact);
 }
 

@@ -129,13 +129,7 @@ inline identification::Noise KnownNoise(double variance, std::size_t samples) {
 
 /// An autoregressive process of order one.
 inline identification::Autocorrelation FirstOrder(double rho) {
-  identification::Autocorrelation process;
-  process.order = 1;
-  process.coefficients[0] = rho;
-  process.correlations[0] = 1.0;
-  process.correlations[1] = rho;
-  process.innovation_share = 1 - rho * rho;
-  return process;
+  return {.coefficients = {rho}, .correlations = {1.0, rho}, .innovation_share = 1 - rho * rho};
 }
 
 /// A result made by hand: σ, α and Tc that are well known, one record. Tc = 10 N.

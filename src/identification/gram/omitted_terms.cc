@@ -104,7 +104,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
       EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(readings)});
-  if (process.order > 0 || noise.drawn.size() > 0 || !noise.of_records.empty()) {
+  if (!process.coefficients.empty() || noise.drawn.size() > 0 || !noise.of_records.empty()) {
     Eigen::MatrixXd columns(readings, jacobian.cols() + departures.columns.cols());
     columns << jacobian.topRows(readings), departures.columns.topRows(readings);
     gram.SetNoise(noise.Product(data.records, process, columns));
@@ -135,7 +135,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
     if (of_term.values.size() == 0) continue;
     TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
     // Under autocorrelated noise the F test of a single term is too liberal.
-    if (process.order == 0) {
+    if (process.coefficients.empty()) {
       least = std::min(least, term.p_value);
       explained = std::max(explained, term.explains * gram.sum_of_squares());
     }

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "core/probability.h"
 
 namespace mindahl::identification {
 namespace {
 
-constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
+constexpr std::size_t kHighestOrder = 12;
 constexpr std::size_t kSamplesPerOrder = 10;
 /// Fraction of its largest output below which a filter's memory is rounding.
 constexpr double kForgotten = 1e-9;
@@ -19,7 +20,7 @@ using Lags = Eigen::Array<double, kHighestOrder + 1, 1>;
 
 /// Returns the number of samples that count.
 double CountedSamplesOf(const ScaledRecord& record) {
-  return static_cast<double>(std::ssize(record.counts) - std::ranges::count(record.counts, 0));
+  return static_cast<double>(std::ranges::count(record.counts, 1));
 }
 
 /// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
@@ -46,14 +47,14 @@ Lags EstimateAutocovariances(std::span<const ScaledRecord> records,
 
 /// Returns ρ₀, ρ₁ … of all lags, until they have decayed.
 std::vector<double> AllCorrelations(const Autocorrelation& process) {
-  const auto size = static_cast<std::ptrdiff_t>(process.order);
-  std::vector<double> all(process.correlations.begin(), process.correlations.begin() + size + 1);
+  const auto order = std::ssize(process.coefficients);
+  std::vector<double> all = process.correlations;
   // Beyond the order ρ obeys the recursion of r itself.
   const auto is_remembered = [](double correlation) { return std::abs(correlation) >= kForgotten; };
-  while (std::any_of(all.rbegin(), all.rbegin() + size, is_remembered) &&
+  while (std::any_of(all.rbegin(), all.rbegin() + order, is_remembered) &&
          all.size() < kLongestMemory) {
     all.push_back(
-        std::inner_product(all.rbegin(), all.rbegin() + size, process.coefficients.begin(), 0.0));
+        std::inner_product(all.rbegin(), all.rbegin() + order, process.coefficients.begin(), 0.0));
   }
   return all;
 }
@@ -210,7 +211,7 @@ Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
   Autocorrelation best;
   if (!(covariance[0] > 0)) return best;
   // By Levinson and Durbin: each order from the one before.
-  std::array<double, kHighestOrder> coefficients{};
+  std::vector<double> coefficients;
   double variance = covariance[0];
   double best_criterion = 0.0;  // of order 0, by how much others are better
   for (std::size_t order = 1; order <= highest; ++order) {
@@ -219,25 +220,23 @@ Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
       numerator -= coefficients[k - 1] * covariance[order - k];
     }
     const double reflection = numerator / variance;
-    const std::array<double, kHighestOrder> last = coefficients;
-    for (std::size_t k = 1; k < order; ++k) {
-      coefficients[k - 1] -= reflection * last[order - k - 1];
-    }
-    coefficients[order - 1] = reflection;
+    const std::vector<double> last = coefficients;
+    std::ranges::transform(
+        last, last | std::views::reverse, coefficients.begin(),
+        [&](double coefficient, double mirrored) { return coefficient - reflection * mirrored; });
+    coefficients.push_back(reflection);
     variance *= 1 - reflection * reflection;
     if (!(variance > 0)) break;
     const double criterion = samples * std::log(variance / covariance[0]) +
                              static_cast<double>(order) * std::log(samples);
-    if (criterion < best_criterion) {
-      best_criterion = criterion;
-      best.order = order;
-      best.coefficients = coefficients;
-      best.innovation_share = variance / covariance[0];
-    }
+    if (!(criterion < best_criterion)) continue;
+    best_criterion = criterion;
+    best.coefficients = coefficients;
+    best.innovation_share = variance / covariance[0];
   }
   // Yule and Walker's process has the correlations that it was made from, to its order.
-  for (std::size_t lag = 0; lag <= best.order; ++lag) {
-    best.correlations[lag] = covariance[lag] / covariance[0];
+  for (std::size_t lag = 1; lag <= best.coefficients.size(); ++lag) {
+    best.correlations.push_back(covariance[lag] / covariance[0]);
   }
   return best;
 }
@@ -248,13 +247,13 @@ double Autocorrelation::SquaredCorrelations() const {
 }
 
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  if (order == 0 || columns.cols() == 0) return columns.transpose() * columns;
+  if (coefficients.empty() || columns.cols() == 0) return columns.transpose() * columns;
   // The columns filtered backwards by 1/φ until they have decayed: a column a sample, latest first.
   const Eigen::Index memory = std::ssize(AllCorrelations(*this));
   Eigen::MatrixXd filtered = Eigen::MatrixXd::Zero(columns.cols(), columns.rows() + memory);
   filtered.leftCols(columns.rows()) = columns.transpose().rowwise().reverse();
   for (Eigen::Index i = 1; i < filtered.cols(); ++i) {
-    for (Eigen::Index k = 0; k < std::min(static_cast<Eigen::Index>(order), i); ++k) {
+    for (Eigen::Index k = 0; k < std::min(std::ssize(coefficients), i); ++k) {
       filtered.col(i) += coefficients[static_cast<std::size_t>(k)] * filtered.col(i - 1 - k);
     }
   }

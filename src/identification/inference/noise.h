@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -33,12 +32,9 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
 /// found by Yule and Walker's equations (which make it stable), its order by Schwarz's criterion.
 /// Loops leave residuals that are never white: what a model misses is smooth along the loop.
 struct Autocorrelation {
-  static constexpr std::size_t kHighestOrder = 12;
-
-  std::size_t order = 0;                                       // p; 0 when the residuals are white
-  std::array<double, kHighestOrder> coefficients{};            // φ₁ … φ_p
-  std::array<double, kHighestOrder + 1> correlations = {1.0};  // ρ₀ … ρ_p, the sample's
-  double innovation_share = 1.0;                               // variance of ε over that of r
+  std::vector<double> coefficients = {};     // φ₁ … φ_p; none when the residuals are white
+  std::vector<double> correlations = {1.0};  // ρ₀ … ρ_p, the sample's
+  double innovation_share = 1.0;             // variance of ε over that of r
 
   /// 1 + 2Σρ_k² over all lags: as many correlated residuals determine a variance as well as one
   /// independent one does (Bartlett 1946).
