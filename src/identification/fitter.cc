@@ -122,20 +122,6 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
                           std::sqrt((solution.sum_of_squares - squares_of_priors) / count);
 }
 
-void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
-  const ScaledRecords& data = attempt.data;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const loop::PreparedRecord& prepared = attempt.prepared.records[r];
-    RecordFit& fit = result.records.emplace_back();
-    static_cast<loop::RecordReading&>(fit) = prepared;
-    fit.turns_between = data.records[r].turns_between;
-    if (data.is_forced()) fit.displacement_noise = solved.noise.force * data.length;
-    if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
-    fit.load_ratio = data.records[r].load;
-    fit.load_varies = !data.records[r].load_ratio.empty();
-  }
-}
-
 /// Assembles what a solution says by itself, and what the records show without a model.
 FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   const ScaledRecords& data = attempt.data;
@@ -147,7 +133,15 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   result.response = attempt.options.response();
   result.confidence = attempt.options.confidence;
   result.force_sense = attempt.prepared.force_sense;
-  FillRecords(attempt, solved, result);
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    RecordFit& fit = result.records.emplace_back();
+    static_cast<loop::RecordReading&>(fit) = attempt.prepared.records[r];
+    fit.turns_between = data.records[r].turns_between;
+    if (data.is_forced()) fit.displacement_noise = solved.noise.force * data.length;
+    if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
+    fit.load_ratio = data.records[r].load;
+    fit.load_varies = !data.records[r].load_ratio.empty();
+  }
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
   result.findings = FindMissingRows(attempt.prepared.records);
   if (attempt.depth >= Depth::kIntervals) {
@@ -247,6 +241,28 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
   HoldOut(aside, records, options);
   FitResult without = FitOnce(records, depth, std::move(options));
   return without.adequacy.verdict == AdequacyVerdict::kAdequate ? without : result;
+}
+
+/// Returns the options of a second fit, with a slip force no larger than the largest force, where
+/// the loop slides over most of its stroke and a law that misses more than poor_misfit carries its
+/// slip force nowhere: the loop has carried it. Nothing where that is not so, where the other law
+/// is preferred, or the user limits Tc.
+std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
+  constexpr const char* kName = "slip_force";
+  const Thresholds& thresholds = options.thresholds;
+  // Below Depth::kIntervals there is no misfit. The other law may carry the force.
+  const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
+                           result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
+  if (is_followed || result.prefers_other_law() || result.is_scaled_by_load() ||
+      result.response == loop::Channel::kDisplacement || options.bounds.contains(kName) ||
+      options.fixed.contains(kName) || !loop::Slides(result.WidestRecord().facts) ||
+      result.PeakForce() >= thresholds.mobilised * result.law.slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = options;
+  within.bounds[kName] = {0.0, result.PeakForce()};
+  within.start.clear();
+  return within;
 }
 
 /// Fits, and once more where the slip force runs away from what was measured.

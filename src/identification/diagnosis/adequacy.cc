@@ -18,25 +18,6 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
   return is_far && !(std::abs(ratio - 1) < std::abs(before - 1));
 }
 
-std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
-  constexpr const char* kName = "slip_force";
-  const Thresholds& thresholds = options.thresholds;
-  // Below Depth::kIntervals there is no misfit. The other law may carry the force.
-  const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
-                           result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
-  if (is_followed || result.prefers_other_law() || result.is_scaled_by_load() ||
-      result.response == loop::Channel::kDisplacement || options.bounds.contains(kName) ||
-      options.fixed.contains(kName) || !loop::Slides(result.WidestRecord().facts)) {
-    return std::nullopt;
-  }
-  const double peak_force = result.PeakForce();
-  if (peak_force >= thresholds.mobilised * result.law.slip_force) return std::nullopt;
-  FitOptions within = options;
-  within.bounds[kName] = {0.0, peak_force};
-  within.start.clear();
-  return within;
-}
-
 double MissedForce(const FitResult& result) {
   const double explained = result.adequacy.misfit;
   // The rms includes the readings that a robust loss weighs down.

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "identification/gram/omitted_terms.h"
-#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/facts.h"
@@ -19,12 +17,6 @@ namespace mindahl::identification {
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
-
-/// Returns the options of a second fit, with a slip force no larger than the largest force, where
-/// the loop slides over most of its stroke and a law that misses more than poor_misfit carries its
-/// slip force nowhere: the loop has carried it. Nothing where that is not so, where the other law
-/// is preferred, or the user limits Tc.
-std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options);
 
 /// Returns the rms of what the model misses [N or m]: of residuals that look like noise the part
 /// that the causes explain, of others all of them but their white noise.
