@@ -42,22 +42,6 @@ void MeasureNoise(const Problem& problem, std::span<const double> residual, bool
   result.degrees_of_freedom = noise.degrees_of_freedom(problem.parameters.free().size());
 }
 
-/// Adequacy, and intervals that cover what its causes would change.
-/// @param is_limited  did the search end at a limit of its own?
-void ConsiderDepartures(const Estimates& fitted, bool is_limited, FitResult& result) {
-  const Problem& problem = fitted.problem();
-  const Thresholds& thresholds = fitted.thresholds();
-  const AdequacyTest test = TestAdequacy(fitted);
-  const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
-  result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
-  GradeUse(thresholds, result);
-  if (!MayOmitTerms(result.adequacy, thresholds)) return;
-  WidenByOmittedTerms(problem, fitted.solution(), test, causes,
-                      StudentQuantile(test.degrees_of_freedom, result.confidence),
-                      result.parameters);
-  if (result.adequacy.verdict != AdequacyVerdict::kAdequate) CoverDiscrepancy(fitted, result);
-}
-
 }  // namespace
 
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
@@ -92,7 +76,16 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     result.adequacy.tried = 1;
     GradeUse(thresholds, result);
   } else if (result.depth >= Depth::kIntervals) {
-    ConsiderDepartures(fitted, limit.has_value(), result);
+    const AdequacyTest test = TestAdequacy(fitted);
+    const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
+    result.adequacy =
+        JudgeAdequacy(attempt.data, test, causes, limit.has_value(), result, thresholds);
+    GradeUse(thresholds, result);
+    if (MayOmitTerms(result.adequacy, thresholds)) {
+      const double quantile = StudentQuantile(test.degrees_of_freedom, result.confidence);
+      WidenByOmittedTerms(problem, solution, test, causes, quantile, result.parameters);
+    }
+    if (result.adequacy.verdict != AdequacyVerdict::kAdequate) CoverDiscrepancy(fitted, result);
   }
   KeepAboveCarriedForce(problem.parameters, result);
   Append(result.findings, FindOnParameters(fitted, attempt.prepared, result));

@@ -187,24 +187,21 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const FitResult& dahl = is_masing ? *other : fit;
   std::vector<SampleRange> past;
   if (is_open && is_for_dahl) past = UnknownPast(records, data, fit, dahl);
+  bool is_told = true;
   if (!past.empty() && is_one_amplitude) {
     const auto leaves_more = [&](const FitResult& of) {
       return of.rms > options.thresholds.larger_rms * std::sqrt(WhiteVariance(of));
     };
-    const bool is_told = fit.WidestRecord().reversals.size() > 1 &&
-                         !loop::HasSlipped(fit.WidestRecord().facts) && leaves_more(masing) &&
-                         !leaves_more(dahl);
-    if (!is_told) {
-      choice.delta_aicc = delta;
-      return choice;
-    }
+    is_told = fit.WidestRecord().reversals.size() > 1 &&
+              !loop::HasSlipped(fit.WidestRecord().facts) && leaves_more(masing) &&
+              !leaves_more(dahl);
   } else if (!past.empty()) {
     const std::optional<double> without = refitted(past, "");
     if (!without) return choice;
     delta = *without;
   }
   choice.delta_aicc = delta;
-  if (!is_undecided(delta)) choice.preferred = delta > 0 ? fit.model : choice.alternative;
+  if (is_told && !is_undecided(delta)) choice.preferred = delta > 0 ? fit.model : choice.alternative;
   return choice;
 }
 

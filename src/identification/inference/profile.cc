@@ -117,24 +117,6 @@ class HeldParameter {
   Solution solution_;
 };
 
-/// True if a loop that hardly dissipates leaves open that it is far from slip.
-bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result) {
-  constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
-  return result.WidestRecord().facts.energy_ratio <= kHardly &&
-         HeldParameter(fitted, kSlipForce, SolverOptionsOf(fitted.options())).IsOpenAbove();
-}
-
-/// True if α rests on so few samples of a stroke that the likelihood has an edge at each α where
-/// one more sample enters partial slip. Between two edges every α fits with a σ of its own.
-bool RestsOnFewSamples(const Estimates& fitted, const FitResult& result) {
-  constexpr double kFew = 2.0;  // of a stroke
-  double strokes = 0.0;
-  for (const RecordFit& record : result.records) {
-    strokes += static_cast<double>(record.reversals.size()) + 1;
-  }
-  return IsFree(fitted, kShape) && fitted.SamplesOf(kShape) < kFew * strokes;
-}
-
 /// Returns the parameters of which the parabola may fail: all of a loop that hardly slips, of a law
 /// at a bound, and where Tc or the rig is badly known; σ and α where few samples slip in part.
 std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result) {
@@ -150,13 +132,27 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   const bool slips = result.PeakForce() >= thresholds.mobilised * result.law.slip_force &&
                      (!IsFree(fitted, kSpring) || loop::Slides(result.WidestRecord().facts));
   const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
+  constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
+  const auto may_be_far_from_slip = [&] {
+    return result.WidestRecord().facts.energy_ratio <= kHardly &&
+           HeldParameter(fitted, kSlipForce, SolverOptionsOf(fitted.options())).IsOpenAbove();
+  };
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
       (!slips || result.law.shape_exponent <= thresholds.jenkins_shape ||
        std::ranges::any_of(std::array{kSlipForce, kStiffness, kShape}, is_at_bound) ||
-       is_badly_known(kSlipForce) || MayBeFarFromSlip(fitted, result));
+       is_badly_known(kSlipForce) || may_be_far_from_slip());
   if (is_rig_open || is_slip_open) return {kStiffness, kShape, kSlipForce, kRig, kSpring};
-  if (RestsOnFewSamples(fitted, result)) return {kStiffness, kShape};
+  // If α rests on few samples of a stroke, the likelihood has an edge at each α where one more
+  // sample enters partial slip. Between two edges every α fits with a σ of its own.
+  constexpr double kFew = 2.0;  // of a stroke
+  double strokes = 0.0;
+  for (const RecordFit& record : result.records) {
+    strokes += static_cast<double>(record.reversals.size()) + 1;
+  }
+  if (IsFree(fitted, kShape) && fitted.SamplesOf(kShape) < kFew * strokes) {
+    return {kStiffness, kShape};
+  }
   if (is_badly_known(kStiffness)) return {kStiffness};
   return {};
 }
