@@ -17,14 +17,18 @@
 #include "identification/solved_fit.h"
 
 namespace mindahl::identification {
-namespace {
 
-/// Estimates the noise and the statistics of the residuals.
-/// @param residual     weighted, of every sample
-/// @param is_rounding  are they rounding errors, autocorrelated as they like?
-void MeasureNoise(const Problem& problem, std::span<const double> residual, bool is_rounding,
-                  const Thresholds& thresholds, Noise& noise, FitResult& result) {
-  const ScaledRecords& data = *problem.data;
+FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
+  const ScaledRecords& data = attempt.data;
+  const Problem& problem = solved.best.problem;
+  const Solution& solution = solved.solution();
+  const Thresholds& thresholds = attempt.options.thresholds;
+  // Rounding errors are no noise: nothing is to be learnt from what they look like.
+  const double rms = std::sqrt(solution.sum_of_squares / static_cast<double>(data.counted));
+  const bool is_rounding = rms < 10 * kRoundingRms;
+  Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
+  const std::span<const double> residual = SpanOf(at.residual);
+  Noise& noise = solved.noise;
   double widening = 1.0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     ResidualStructure& structure = result.records[r].structure;
@@ -40,22 +44,7 @@ void MeasureNoise(const Problem& problem, std::span<const double> residual, bool
   result.residuals = DescribeResiduals(result.records);
   result.residuals.effective_samples = noise.effective_samples();
   result.degrees_of_freedom = noise.degrees_of_freedom(problem.parameters.free().size());
-}
-
-}  // namespace
-
-FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
-  const FitOptions& options = attempt.options;
-  const Problem& problem = solved.best.problem;
-  const Solution& solution = solved.solution();
-  const Thresholds& thresholds = options.thresholds;
-  // Rounding errors are no noise: nothing is to be learnt from what they look like.
-  const double rms = std::sqrt(solution.sum_of_squares / static_cast<double>(attempt.data.counted));
-  const bool is_rounding = rms < 10 * kRoundingRms;
-  Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
-  MeasureNoise(problem, {at.residual.data(), problem.size()}, is_rounding, thresholds, solved.noise,
-               result);
-  const Estimates fitted(problem, solution, solved.noise, options, std::move(at));
+  const Estimates fitted(problem, solution, noise, attempt.options, std::move(at));
   const std::vector<std::size_t>& reported = problem.parameters.reported();
   for (std::size_t k = 0; k < reported.size(); ++k) {
     fitted.Fill(reported[k], result.parameters[k]);
@@ -69,7 +58,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     Append(result.findings, IncludeCompliantRig(fitted, result.parameters));
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, result.parameters);
-  if (!problem.data->is_forced()) CoverSteps(attempt.prepared, result);
+  if (!data.is_forced()) CoverSteps(attempt.prepared, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (result.depth >= Depth::kIntervals && is_rounding) {
@@ -78,8 +67,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   } else if (result.depth >= Depth::kIntervals) {
     const AdequacyTest test = TestAdequacy(fitted);
     const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
-    result.adequacy =
-        JudgeAdequacy(attempt.data, test, causes, limit.has_value(), result, thresholds);
+    result.adequacy = JudgeAdequacy(data, test, causes, limit.has_value(), result, thresholds);
     GradeUse(thresholds, result);
     if (MayOmitTerms(result.adequacy, thresholds)) {
       const double quantile = StudentQuantile(test.degrees_of_freedom, result.confidence);

@@ -201,7 +201,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     delta = *without;
   }
   choice.delta_aicc = delta;
-  if (is_told && !is_undecided(delta)) choice.preferred = delta > 0 ? fit.model : choice.alternative;
+  if (is_told && !is_undecided(delta))
+    choice.preferred = delta > 0 ? fit.model : choice.alternative;
   return choice;
 }
 

@@ -30,7 +30,8 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);
     const double share = variance * estimates.FStatistic(kSlipForce, best.sum_of_squares + 1);
     EXPECT_EQ(share<0.5, rho> 0);
-    const Ends ends = Profile(estimates, kSlipForce).ends;
+    Region region;
+    const Ends ends = Profile(estimates, kSlipForce, region);
     ASSERT_TRUE(ends.lower && ends.upper);
     for (const double end : {*ends.lower, *ends.upper}) {
       const double cost = Stages(record, {.fixed = {{"slip_force", end}}}).Solve().sum_of_squares -
@@ -76,7 +77,8 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   for (const double variance : {1e-6, 1e-3}) {
     const Noise noise = KnownNoise(variance, stages.data.counted);
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);
-    const Ends ends = Profile(estimates, kSlipForce).ends;
+    Region region;
+    const Ends ends = Profile(estimates, kSlipForce, region);
     EXPECT_EQ(ends.upper.has_value(), variance < 1e-5);
   }
 }

@@ -19,25 +19,23 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   constexpr double kLeastGrowth = 0.1;  // the next step is at most ten times the last
   constexpr double kFromEnds = 0.1;     // a kink is not stepped towards for ever
   std::pair inside = {0.0, 0.0};        // step and root
-  std::optional<std::pair<double, double>> outside;
+  std::pair outside = inside;
+  bool is_bracketed = false;
   for (int look = 0; look < kMostLooks; ++look) {
     const double root = root_at(step);
     if (std::abs(root - 1) < kClose) return step;
-    if (root < 1) {
-      inside = {step, root};
-    } else {
-      outside = {step, root};
-    }
-    if (outside) {
-      const double fraction = (1 - inside.second) / (outside->second - inside.second);
+    (root < 1 ? inside : outside) = {step, root};
+    is_bracketed = is_bracketed || !(root < 1);
+    if (is_bracketed) {
+      const double fraction = (1 - inside.second) / (outside.second - inside.second);
       step = inside.first +
-             std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (outside->first - inside.first);
+             std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (outside.first - inside.first);
     } else {
       if (step >= limit) return std::nullopt;
       step = std::min(step / std::max(root, kLeastGrowth), limit);
     }
   }
-  return outside ? std::optional(step) : std::nullopt;
+  return is_bracketed ? std::optional(step) : std::nullopt;
 }
 
 bool IsFree(const Estimates& fitted, std::size_t parameter) {
@@ -47,8 +45,14 @@ bool IsFree(const Estimates& fitted, std::size_t parameter) {
 /// The likelihood with one parameter held, the others fitted again.
 class HeldParameter {
  public:
-  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options)
-      : fitted_(fitted), problem_(fitted.problem()), parameter_(parameter), options_(options) {}
+  /// @param region  to which θ of the fits that are not rejected is added
+  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
+                Region& region)
+      : fitted_(fitted),
+        problem_(fitted.problem()),
+        parameter_(parameter),
+        options_(options),
+        region_(region) {}
 
   /// True if a slip force far above the largest force, which is about 1, is not excluded.
   bool IsOpenAbove() {
@@ -61,9 +65,6 @@ class HeldParameter {
     if (IsFree(fitted_, kSpring)) region_.push_back(solution_.theta);
     return true;
   }
-
-  /// Returns θ of the fits so far that are not rejected.
-  [[nodiscard]] const std::vector<std::vector<double>>& region() const { return region_; }
 
   /// Finds the value where F is the critical one on one side of the best fit; ValueAtBound() where
   /// it is less up to there; nothing where F is less for a factor of a thousand.
@@ -113,7 +114,7 @@ class HeldParameter {
   Problem problem_;
   std::size_t parameter_;
   SolverOptions options_;
-  std::vector<std::vector<double>> region_;
+  Region& region_;
   Solution solution_;
 };
 
@@ -134,8 +135,10 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   const bool is_rig_open = IsFree(fitted, kRig) && (is_at_bound(kRig) || is_badly_known(kRig));
   constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
   const auto may_be_far_from_slip = [&] {
+    Region region;
+    const SolverOptions search = SolverOptionsOf(fitted.options());
     return result.WidestRecord().facts.energy_ratio <= kHardly &&
-           HeldParameter(fitted, kSlipForce, SolverOptionsOf(fitted.options())).IsOpenAbove();
+           HeldParameter(fitted, kSlipForce, search, region).IsOpenAbove();
   };
   const bool is_slip_open =
       IsFree(fitted, kSlipForce) &&
@@ -159,16 +162,15 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
 
 }  // namespace
 
-Profiled Profile(const Estimates& fitted, std::size_t parameter) {
+Ends Profile(const Estimates& fitted, std::size_t parameter, Region& region) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(fitted.options());
   search.is_rough = fitted.problem().parameters.free().size() > kMany;
-  HeldParameter held(fitted, parameter, search);
+  HeldParameter held(fitted, parameter, search, region);
   const std::optional<double> lower = held.End(-1.0);
   const bool is_open = parameter == kSlipForce && held.IsOpenAbove();
-  const std::optional<double> upper = is_open ? std::nullopt : held.End(1.0);
-  return {.ends = {.lower = lower, .upper = upper}, .region = held.region()};
+  return {.lower = lower, .upper = is_open ? std::nullopt : held.End(1.0)};
 }
 
 void ProfileIntervals(const Estimates& fitted, FitResult& result) {
@@ -180,12 +182,8 @@ void ProfileIntervals(const Estimates& fitted, FitResult& result) {
   };
   std::vector<std::size_t> profiled = ProfiledOf(fitted, result);
   std::erase_if(profiled, [&](std::size_t p) { return !IsFree(fitted, p); });
-  std::vector<std::vector<double>> region;
-  for (const std::size_t p : profiled) {
-    const Profiled profile = Profile(fitted, p);
-    SetInterval(estimate_of(p), profile.ends);
-    region.insert(region.end(), profile.region.begin(), profile.region.end());
-  }
+  Region region;
+  for (const std::size_t p : profiled) SetInterval(estimate_of(p), Profile(fitted, p, region));
   for (const std::size_t p : profiled) {
     ParameterEstimate& estimate = estimate_of(p);
     // The search for one parameter's end may pass what another's did not find.

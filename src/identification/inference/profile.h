@@ -12,17 +12,13 @@
 /// (docs/theory.md §10), of which the Jacobian at the best fit sees the floor there and no further.
 namespace mindahl::identification {
 
-/// Holds what the likelihood says of a parameter.
-struct Profiled {
-  Ends ends;                                ///< its interval
-  std::vector<std::vector<double>> region;  ///< θ of the fits on the way that are not rejected
-};
+using Region = std::vector<std::vector<double>>;  // θ of fits that are not rejected
 
 /// Returns the ends of the interval of a parameter, where F of the best fit against those with it
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
-/// the largest force that is not clearly rejected.
-Profiled Profile(const Estimates& fitted, std::size_t parameter);
+/// the largest force that is not clearly rejected. Adds to `region` what lies on the way.
+Ends Profile(const Estimates& fitted, std::size_t parameter, Region& region);
 
 /// Makes intervals by the likelihood of those of σ, α, Tc and a fitted rig or parallel spring of
 /// which the parabola may be wrong. They include every fit that is not rejected on the way to an
