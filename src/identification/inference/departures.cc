@@ -45,18 +45,6 @@ std::vector<double> DeriveTwice(std::span<const double> values, std::span<const 
   return second;
 }
 
-/// True if many readings of the displacement repeat the one before: it may be read less often than
-/// the force, and what is missing of the motion is no white noise.
-bool IsDisplacementHeld(const ScaledRecords& data, double often) {
-  double repeated = 0.0;
-  for (const ScaledRecord& record : data.records) {
-    const std::vector<double>& read = record.displacement;
-    repeated += std::inner_product(read.begin() + 1, read.end(), read.begin(), 0.0, std::plus(),
-                                   std::equal_to());
-  }
-  return repeated > often * static_cast<double>(data.samples() - data.records.size());
-}
-
 /// Sets the travel since the displacement was last read anew: what is repeated was read at the
 /// first of the repeats, and went straight on to the next reading.
 void SetMissedWay(std::span<Place> places) {
@@ -105,7 +93,16 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
   if (is_forced) contact *= std::exp(LogScaleAt(problem, theta));
   const Eigen::VectorXd complete = is_forced ? contact : Predict(problem, theta);
   const double peak = contact.cwiseAbs().maxCoeff();
-  const bool is_held = IsDisplacementHeld(data, held_readings);
+  // If many readings repeat the one before, the displacement may be read less often than the force,
+  // and what is missing of the motion is no white noise.
+  double repeated = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    const std::vector<double>& read = record.displacement;
+    repeated += std::inner_product(read.begin() + 1, read.end(), read.begin(), 0.0, std::plus(),
+                                   std::equal_to());
+  }
+  const auto pairs = static_cast<double>(data.samples() - data.records.size());
+  const bool is_held = repeated > held_readings * pairs;
   std::vector<Place> places(problem.size());
   for (const ScaledRecord& record : data.records) {
     const std::span<const double> whole = record.Of(std::span(complete.data(), problem.size()));
@@ -220,10 +217,9 @@ constexpr auto kDepartures = std::to_array<Departure>({
 void FollowMotion(const Problem& problem, std::vector<double> theta, std::span<const Place> places,
                   DepartureColumn column, ScaledRecords& data, std::span<double> motion) {
   constexpr double kSmall = 1e-6;  // of the half range of the displacement
-  const double largest =
-      Eigen::Map<const Eigen::VectorXd>(motion.data(), std::ssize(motion)).cwiseAbs().maxCoeff();
-  if (largest == 0) return;
-  const double step = kSmall / largest;
+  const auto [least, greatest] = std::ranges::minmax(motion);
+  if (least == 0 && greatest == 0) return;
+  const double step = kSmall / std::max(-least, greatest);
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::vector<double>& measured = problem.data->records[r].displacement;
     const std::span<double> ways = data.records[r].Of(motion);

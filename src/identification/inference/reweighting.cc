@@ -74,8 +74,7 @@ class Reweighting {
         solution_(solution),
         counts_(data.All(&ScaledRecord::counts)),
         force_(Predict(problem, solution.theta)),
-        from_displacement_(Eigen::ArrayXd::Zero(counts_.size())),
-        degrees_(DegreesOfFreedom(problem)) {}
+        from_displacement_(Eigen::ArrayXd::Zero(counts_.size())) {}
 
   /// Fits until the forces settle. Returns whether they did.
   bool Settle(Loss loss) {
@@ -127,8 +126,8 @@ class Reweighting {
     if (!(slopes > 0 && of_loss > 0)) return false;
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹; JᵀWJ is JᵀJ times the mean weight.
     const auto count = static_cast<double>(data_.counted);
-    noise_.variance *=
-        (influence_squares / degrees_) * (of_loss / count) / ((slopes / count) * (slopes / count));
+    noise_.variance *= (influence_squares / DegreesOfFreedom(problem_)) * (of_loss / count) /
+                       ((slopes / count) * (slopes / count));
     // Samples that are met to the last bit are still rounded.
     noise_.variance = std::max(noise_.variance, kLeastVariance);
     return true;
@@ -174,7 +173,7 @@ class Reweighting {
   /// residuals have the median of normal ones.
   [[nodiscard]] double ForceNoise(Loss loss) const {
     const Eigen::ArrayXd residual = Residual();
-    const double samples_a_degree = static_cast<double>(data_.counted) / degrees_;
+    const double samples_a_degree = static_cast<double>(data_.counted) / DegreesOfFreedom(problem_);
     const auto excess = [&](double variance) {
       const Eigen::ArrayXd precision = counts_ / (variance + from_displacement_);
       if (loss == Loss::kNone) {
@@ -223,8 +222,7 @@ class Reweighting {
   Eigen::MatrixXd errors_;            // of the last draws
   Eigen::ArrayXd drawn_at_;           // forces
   double unit_ = 0.0;                 // deviation of the weighted residuals
-  double degrees_;
-  Eigen::ArrayXd weights_;  // roots
+  Eigen::ArrayXd weights_;            // roots
   Noise noise_;
 };
 
