@@ -104,8 +104,7 @@ SolvedFit FitBestState(const Attempt& attempt) {
   if (candidates.size() == 1 || !std::isfinite(better.solution.sum_of_squares)) {
     return {.best = std::move(virgin)};
   }
-  const Evidence evidence{attempt.data.counted,
-                          EffectiveSamples(better.problem, better.solution.theta)};
+  const Evidence evidence = EvidenceOf(better.problem, better.solution.theta);
   const auto criterion = [&](const Candidate& candidate) {
     return evidence.Aicc(candidate.solution.sum_of_squares,
                          candidate.problem.parameters.free().size());

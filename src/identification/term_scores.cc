@@ -96,7 +96,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
     if (is_inside && was_free(fitted, p)) inside.push_back(p);
   }
   const Linearization at = LinearizeAt(fitted, theta, inside);
-  const Evidence evidence{data.counted, EffectiveSamples(fitted, theta)};
+  const Evidence evidence = EvidenceOf(fitted, theta);
   std::vector<std::optional<TermScore>> scores;
   for (const TermChoice& choice : choices) {
     std::optional<TermScore>& score = scores.emplace_back();

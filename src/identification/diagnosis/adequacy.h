@@ -12,10 +12,8 @@
 /// measured without a model: never with a fitted slip force, which may be as wrong as the model.
 namespace mindahl::identification {
 
-/// True if Tc ran away from a loop that slides: it is more than a quarter off the half gap that was
-/// measured, and no nearer to it than before.
-/// @param without  Tc [N] of the smaller model
-/// @param with     of the larger one
+/// True if Tc [N] of a larger model ran away from a loop that slides: it is more than a quarter off
+/// the half gap that was measured, and no nearer to it than that of the model without the terms.
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 
 /// Returns the rms of what the model misses [N or m]: of residuals that look like noise the part
@@ -26,9 +24,8 @@ double MissedForce(const FitResult& result);
 /// another beats clearly.
 std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
-/// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
-/// what all omitted terms explain, the search ended at a limit of its own, the residuals are unlike
-/// noise, or they exceed the noise that the record has without a model.
+/// Judges a fit doubtful where noise hardly makes what all omitted terms explain, the search ended
+/// at a limit of its own, the residuals are unlike noise, or exceed that of the record itself.
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);
@@ -48,10 +45,9 @@ void GradeUse(const Thresholds& thresholds, FitResult& result);
 /// True unless the loop is so small that its shape and height are those of the rest of the force.
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds);
 
-/// Sets the verdict on each parameter, from estimates and findings alone: the last in the order of
-/// Identifiability of what its interval says (not identifiable without one, bounded below where it
-/// is open above) and what each finding that names it calls for (kFindings). What the user holds is
-/// identifiable.
+/// Sets the verdict on each parameter: the last in the order of Identifiability of what its interval
+/// says (not identifiable without one, bounded below where it is open above) and what each finding
+/// that names it calls for (kFindings). What the user holds is identifiable.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
 /// Withdraws intervals and findings on parameters where the misfit is no noise and as large as

@@ -26,8 +26,6 @@ struct Ends {
   std::optional<double> upper = {};
 };
 
-// The one place where the interval of an estimate is written, the union of its parts.
-
 /// Returns the value at a bound that is the user's or the theory's; empty at a limit of the search,
 /// which says nothing of what lies beyond.
 std::optional<double> ValueAtBound(const Parameter& parameter, BoundSide side);
@@ -45,10 +43,9 @@ void Include(ParameterEstimate& estimate, Ends ends);
 /// Returns it with each prior of a free parameter as one more reading: a row at the end.
 Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at);
 
-/// A problem with its solution and its noise, and what follows: standard errors, intervals and
-/// correlations from the likelihood's parabola at its maximum. Every later stage asks it. Never
-/// fails: by the singular values of the Jacobian, columns scaled to unit norm, it knows which
-/// parameters the data leave open.
+/// A problem with its solution and its noise, and standard errors, intervals and correlations from
+/// the likelihood's parabola at its maximum. Never fails: by the singular values of the Jacobian,
+/// columns scaled to unit norm, it knows which parameters the data leave open.
 class Estimates {
  public:
   /// @param problem  with `solution`, `noise` and `options`, must outlive this
@@ -82,11 +79,10 @@ class Estimates {
   /// Returns the number of samples on which a parameter rests: (Σh²)²/Σh⁴ of the influences h of
   /// the samples on its θ (Kish 1965), n where they have the same.
   [[nodiscard]] double SamplesOf(std::size_t parameter) const;
-  /// Returns the half width of an interval in standard errors.
+  /// Half width of an interval in standard errors; its square is the F beyond which a held
+  /// parameter is outside the interval.
   [[nodiscard]] double quantile() const { return quantile_; }
-  /// Returns the F beyond which a held parameter is outside its interval.
   [[nodiscard]] double critical() const { return quantile_ * quantile_; }
-  /// Returns the half width of the parabola's interval of θ.
   [[nodiscard]] double HalfWidth(std::size_t parameter) const {
     return quantile_ * ErrorOfTheta(parameter);
   }

@@ -299,12 +299,6 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
          EstimateAutocorrelation(data.records, residual).SquaredCorrelations();
 }
 
-double EffectiveSamples(const Problem& problem, std::span<const double> theta) {
-  const Eigen::VectorXd residual = EvaluateResidual(problem, theta);
-  const auto least = static_cast<double>(problem.parameters.free().size() + 1);
-  return std::max(EffectiveSamples(*problem.data, {residual.data(), problem.size()}), least);
-}
-
 double Evidence::LikelihoodRatio(double held, double free) const {
   return effective * std::log(Floored(held, samples) / Floored(free, samples));
 }
@@ -314,6 +308,13 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
   const auto k = static_cast<double>(parameters + 1);  // and the variance
   return effective * std::log(Floored(sum_of_squares, samples) / n) + 2 * k +
          2 * k * (k + 1) / std::max(n - k - 1, 1.0);
+}
+
+Evidence EvidenceOf(const Problem& problem, std::span<const double> theta) {
+  Eigen::VectorXd residual = EvaluateResidual(problem, theta);
+  const auto least = static_cast<double>(problem.parameters.free().size() + 1);
+  return {problem.data->counted,
+          std::max(EffectiveSamples(*problem.data, SpanOf(residual)), least)};
 }
 
 std::vector<double> VariancesOfRecords(const ScaledRecords& data,

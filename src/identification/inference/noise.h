@@ -50,8 +50,7 @@ struct Autocorrelation {
 Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
                                         std::span<const double> residual);
 
-/// The one account of the noise of a fit, in units of the data: whoever states an error, compares
-/// two fits or counts samples asks it.
+/// The noise of a fit, in units of the data.
 struct Noise {
   double variance = 0.0;           // of a weighted residual
   bool is_known = false;           // it was given, not estimated
@@ -84,9 +83,6 @@ struct Noise {
 /// Returns the samples that count, over the variance inflation from the residuals' autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
 
-/// Returns the same of a solution's residuals, no fewer than determine its free parameters.
-double EffectiveSamples(const Problem& problem, std::span<const double> theta);
-
 /// Compares two fits to the same samples; every comparison of fits uses it.
 struct Evidence {
   std::size_t samples;  // that count
@@ -101,6 +97,9 @@ struct Evidence {
   /// handful of them, for which the small-sample term would outweigh any difference of two fits.
   [[nodiscard]] double Aicc(double sum_of_squares, std::size_t parameters) const;
 };
+
+/// Returns that of a solution's residuals, of samples no fewer than determine its free parameters.
+Evidence EvidenceOf(const Problem& problem, std::span<const double> theta);
 
 /// Returns the mean squares of each record's residuals over that of all.
 /// @param residual  weighted, of every sample, not all zero
