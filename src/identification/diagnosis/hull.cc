@@ -129,61 +129,55 @@ double ScatterOfCycles(const FitResult& result) {
          *widest.facts.half_gap_standard_deviation * std::sqrt(1 + 1 / cycles) / widest.load_ratio;
 }
 
-/// The stiffness of the record after its reversals over that of the model: slopes of least squares,
-/// each stroke with an intercept of its own, where the model's force has changed by less than a
-/// fraction of what it changes by in the stroke.
-/// @returns nothing where the strokes have fewer than two samples there
-std::optional<double> RatioOfStiffness(const Estimates& estimates, double window) {
+/// Returns the least and greatest stiffness of the record after its reversals over that of the
+/// model: of slopes of least squares, each stroke with an intercept of its own, where the model's
+/// force has changed by less than an eighth, a quarter and a half of what it changes by in the
+/// stroke; and at the reversal itself, by the parabola through these, and as much again within the
+/// narrowest as is seen of it. 1 where the strokes have fewer than two samples there.
+Extremes RatiosOfStiffness(const Estimates& estimates) {
   constexpr double kFewestOfAStroke = 2;  // samples, for a chord
-  double measured = 0.0;
-  double model = 0.0;
-  double strokes = 0.0;
-  double samples = 0.0;
   const Eigen::ArrayXd residuals = estimates.linearization().residual;
   const auto array_of = [](const std::vector<double>& values) {
     return Eigen::Map<const Eigen::ArrayXd>(values.data(), std::ssize(values));
   };
-  for (const ScaledRecord& record : estimates.problem().data->records) {
-    const auto first_sample = static_cast<Eigen::Index>(record.first);
-    const Eigen::ArrayXd displacement = array_of(record.displacement);
-    const Eigen::ArrayXd force = array_of(record.force);
-    const Eigen::ArrayXd of_model =
-        force + residuals.segment(first_sample, force.size()) / array_of(record.root_weight);
-    for (const Stroke& stroke : MainStrokes(record, estimates.thresholds())) {
-      std::vector<Eigen::Index> near;
-      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        if (record.root_weight[i] > 0) near.push_back(static_cast<Eigen::Index>(i));
-      }
-      if (near.empty()) continue;
-      const double first = of_model[near.front()];
-      const double limit = window * std::abs(of_model[near.back()] - first);
-      near.erase(std::ranges::find_if(
-                     near, [&](Eigen::Index i) { return std::abs(of_model[i] - first) > limit; }),
-                 near.end());
-      // The motion turned anywhere about its outermost sample.
-      std::erase(near, static_cast<Eigen::Index>(stroke.begin));
-      ++strokes;
-      if (near.empty()) continue;
-      const auto at = displacement(near);
-      const Eigen::ArrayXd places = at - at.mean();
-      measured += (places * force(near)).sum();
-      model += (places * of_model(near)).sum();
-      samples += static_cast<double>(near.size());
-    }
-  }
-  const double ratio = measured / model;  // of slopes at the same points
-  if (samples < kFewestOfAStroke * strokes || !(ratio > 0 && std::isfinite(ratio))) return {};
-  return ratio;
-}
-
-/// Returns the least and greatest of the same over an eighth, a quarter and a half of the change,
-/// and at the reversal itself: by the parabola through these, and as much again within the
-/// narrowest as is seen of it. 1 where none is known.
-Extremes RatiosOfStiffness(const Estimates& estimates) {
   std::vector<double> ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
-    const std::optional<double> ratio = RatioOfStiffness(estimates, window);
-    if (ratio) ratios.push_back(*ratio);
+    double measured = 0.0;
+    double model = 0.0;
+    double strokes = 0.0;
+    double samples = 0.0;
+    for (const ScaledRecord& record : estimates.problem().data->records) {
+      const auto first_sample = static_cast<Eigen::Index>(record.first);
+      const auto displacement = array_of(record.displacement);
+      const auto force = array_of(record.force);
+      const Eigen::ArrayXd of_model =
+          force + residuals.segment(first_sample, force.size()) / array_of(record.root_weight);
+      for (const Stroke& stroke : MainStrokes(record, estimates.thresholds())) {
+        std::vector<Eigen::Index> near;
+        for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+          if (record.root_weight[i] > 0) near.push_back(static_cast<Eigen::Index>(i));
+        }
+        if (near.empty()) continue;
+        const double first = of_model[near.front()];
+        const double limit = window * std::abs(of_model[near.back()] - first);
+        const auto is_beyond = [&](Eigen::Index i) {
+          return std::abs(of_model[i] - first) > limit;
+        };
+        near.erase(std::ranges::find_if(near, is_beyond), near.end());
+        // The motion turned anywhere about its outermost sample.
+        std::erase(near, static_cast<Eigen::Index>(stroke.begin));
+        ++strokes;
+        if (near.empty()) continue;
+        const auto at = displacement(near);
+        const Eigen::ArrayXd places = at - at.mean();
+        measured += (places * force(near)).sum();
+        model += (places * of_model(near)).sum();
+        samples += static_cast<double>(near.size());
+      }
+    }
+    const double ratio = measured / model;  // of slopes at the same points
+    const bool is_known = samples >= kFewestOfAStroke * strokes && std::isfinite(ratio);
+    if (is_known && ratio > 0) ratios.push_back(ratio);
   }
   if (ratios.empty()) return {1.0, 1.0};
   const double parabola =

@@ -151,8 +151,8 @@ double RootOfSpeed(const Place& at) {
   return std::copysign(std::sqrt(std::abs(at.velocity)), at.velocity);
 }
 double ForceByTime(const Place& at) { return at.force * at.time; }
-double Curvature(const Place& at) { return Square(at.displacement); }
-double CubicCurvature(const Place& at) { return Cube(at.displacement); }
+double Quadratic(const Place& at) { return Square(at.displacement); }
+double Cubic(const Place& at) { return Cube(at.displacement); }
 double Position(const Place& at) { return at.force * at.displacement; }
 double PositionSquared(const Place& at) { return at.force * Square(at.displacement); }
 double PositionOfSize(const Place& at) { return SizeOfForce(at) * at.displacement; }
@@ -170,7 +170,7 @@ double BeyondLimit(const Place& at) {
   return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak), at.force);
 }
 
-// Code, group, columns of a force and of a displacement that answers.
+// Code, group, columns of a force and of a displacement that answers, moves, term.
 constexpr auto kDepartures = std::to_array<Departure>({
     // A force that is read late meets the displacement of later.
     {"channel_lag", "lag", {Lag}, {Of<&Place::rate>}},
@@ -182,28 +182,18 @@ constexpr auto kDepartures = std::to_array<Departure>({
     {"guide_friction", "", {Of<&Place::direction>}},
     {"rig_in_series", "rig_stiffness", {ForceOfContact}, {Of<&Place::force>}, /*moves=*/true},
     {"backlash", "backlash", {Gap}, {Of<&Place::direction>}, /*moves=*/true},
-    {"displacement_sensor",
-     "",
-     {Curvature, CubicCurvature},
-     {Curvature, CubicCurvature},
-     /*moves=*/true},
+    {"displacement_sensor", "", {Quadratic, Cubic}, {Quadratic, Cubic}, /*moves=*/true},
     {"inertia", "inertia", {Of<&Place::acceleration>}},
     {"unequal_directions", "asymmetry", {SizeOfForce, Of<&Place::asymmetry>}},
     {"running_in", "slip_trend", {ForceByTime}},
     {"force_saturates", "", {BeyondLimit, CubeOfForce}},
-    {.code = "slip_position",
-     .group = "slip_position",
-     .columns = {Position, PositionOfSize},
-     .term = "slip_slope"},
-    {"force_of_position", "", {Curvature, CubicCurvature}},
+    {"slip_position", "slip_position", {Position, PositionOfSize}, {}, false, "slip_slope"},
+    {"force_of_position", "", {Quadratic, Cubic}},
     {"smoothing", "", {Of<&Place::curvature>}},
     // A turn is the first of its repeats, where nothing is missed.
     {"held_displacement", "", {Of<&Place::missed>}, {}, /*moves=*/true},
     {"displacement_drift", "displacement_drift", {}, {Of<&Place::time>}},
-    {.code = "speed_power",
-     .group = "slip_speed",
-     .columns = {RootOfSpeed, Of<&Place::velocity>},
-     .term = "speed_exponent"},
+    {"speed_power", "slip_speed", {RootOfSpeed, Of<&Place::velocity>}, {}, false, "speed_exponent"},
     {.code = "slip_position_quadratic",
      .group = "slip_position_quadratic",
      .columns = {Position, PositionSquared, PositionOfSize, PositionSquaredOfSize},
