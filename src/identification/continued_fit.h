@@ -23,6 +23,17 @@ inline void StartFrom(const FitResult& fit, FitOptions& options) {
   }
 }
 
+/// Fits; a result without parameters where a term is not identifiable, a rig softer than it can be,
+/// or samples are too few.
+inline FitResult FitIfPossible(std::span<const loop::RecordView> records, FitOptions options,
+                               Depth depth) {
+  try {
+    return Fitter(std::move(options)).Fit(records, depth);
+  } catch (const InvalidArgument&) {
+    return {};
+  }
+}
+
 /// Samples [begin, end) of a record.
 struct SampleRange {
   std::size_t record = 0;
@@ -41,18 +52,13 @@ inline void HoldOut(std::span<const SampleRange> held_out,
   }
 }
 
-/// Fits at Depth::kEstimate without some samples.
-/// @returns empty where it does not converge, has too few samples or a rig beyond what it can see
+/// Fits at Depth::kEstimate without some samples; empty where that does not converge.
 inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out,
                                            std::span<const loop::RecordView> records,
                                            FitOptions options) {
   HoldOut(held_out, records, options);
-  try {
-    FitResult fit = Fitter(std::move(options)).Fit(records, Depth::kEstimate);
-    return fit.converged ? std::optional(std::move(fit)) : std::nullopt;
-  } catch (const InvalidArgument&) {
-    return std::nullopt;
-  }
+  FitResult fit = FitIfPossible(records, std::move(options), Depth::kEstimate);
+  return fit.converged ? std::optional(std::move(fit)) : std::nullopt;
 }
 
 }  // namespace mindahl::identification

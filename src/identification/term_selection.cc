@@ -17,7 +17,6 @@
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
@@ -278,16 +277,11 @@ class Selection {
     return model;
   }
 
-  /// Returns a fit without parameters if a term is not identifiable or the rig too soft.
   FitResult FitTo(FitOptions options, Depth depth) {
     constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
     options.preparation.drawn = drawn_;
     options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-    try {
-      return Fitter(options).Fit(records_, depth);
-    } catch (const InvalidArgument&) {
-      return {};
-    }
+    return FitIfPossible(records_, std::move(options), depth);
   }
 
   [[nodiscard]] bool Gains(const FitResult& fit) const {

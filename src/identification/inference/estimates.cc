@@ -164,10 +164,8 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const bool is_inside = SideOf(parameter, theta) == BoundSide::kInside;
   // At a bound half the normal law lies beyond it.
   const double half = (is_inside ? quantile_ : NormalQuantile(options_.confidence)) * error;
-  if (is_inside) {
-    estimate.standard_error =
-        parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;
-  }
+  const double slope = parameter.term->positive ? estimate.value : std::abs(parameter.scale);
+  if (is_inside) estimate.standard_error = slope * error;
   SetInterval(estimate, EndsWithinBounds(parameter, theta - half, theta + half));
 }
 
@@ -176,11 +174,10 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   const std::optional<Eigen::Index> j = PlaceOf(column);
   if (!i || !j) return std::numeric_limits<double>::quiet_NaN();
   if (i == j) return 1.0;
-  const auto sign = [&](std::size_t p) {
-    return problem_.parameters[p].scale < 0 ? -1.0 : 1.0;  // the value falls where θ grows
-  };
+  // A value falls where θ grows if its scale is negative.
+  const double scales = problem_.parameters[row].scale * problem_.parameters[column].scale;
   const double cosine = factor_(*i, *j) / std::sqrt(factor_(*i, *i) * factor_(*j, *j));
-  return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
+  return std::copysign(1.0, scales) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
 double Estimates::FStatistic(std::size_t parameter, double sum_of_squares) const {

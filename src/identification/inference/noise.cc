@@ -18,7 +18,6 @@ constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to 
 
 using Lags = Eigen::Array<double, kHighestOrder + 1, 1>;
 
-/// Returns the number of samples that count.
 double CountedSamplesOf(const ScaledRecord& record) {
   return static_cast<double>(std::ranges::count(record.counts, 1));
 }
@@ -270,8 +269,7 @@ double Noise::effective_samples() const {
 }
 
 double Noise::degrees_of_freedom(std::size_t parameters) const {
-  constexpr double kKnown = 1e6;
-  if (is_known) return kKnown;
+  if (is_known) return 1e6;
   return std::max(effective_samples() - static_cast<double>(parameters), 1.0);
 }
 
