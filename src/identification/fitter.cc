@@ -113,8 +113,8 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   result.likelihood_rms = result.rms;
   if (!attempt.options.preparation.drawn || attempt.options.loss != Loss::kNone) return;
   double log_weights = 0.0;
-  for (const ScaledRecord& record : data.records) {
-    for (const double weight : record.root_weight) log_weights += weight > 0 ? std::log(weight) : 0;
+  for (const double weight : data.All(&ScaledRecord::root_weight)) {
+    log_weights += weight > 0 ? std::log(weight) : 0;
   }
   const double squares_of_priors = problem.parameters.PriorCost(solution.theta);
   const auto count = static_cast<double>(data.counted);

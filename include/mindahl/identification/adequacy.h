@@ -69,11 +69,11 @@ struct Adequacy {
   AdequacyVerdict verdict = AdequacyVerdict::kAdequate;
   /// rms of the residuals that causes explain or that repeat in every stroke, over the noise's
   double misfit_over_noise = 0.0;
-  double misfit = 0.0;        ///< rms of what the model misses [N or m]
-  double p_value = 1.0;       ///< probability of such residuals from noise alone
-  std::vector<Cause> causes;  ///< those that help, the best first
+  double misfit = 0.0;             ///< rms of what the model misses [N or m]
+  double p_value = 1.0;            ///< probability of such residuals from noise alone
+  std::vector<Cause> causes = {};  ///< those that help, the best first
   /// rms of what the model misses over the measured half gap; empty where no gap was measured.
-  std::optional<double> misfit_over_half_gap;
+  std::optional<double> misfit_over_half_gap = {};
   Use use = Use::kNone;
   std::size_t tried = 0;  ///< causes that the record can identify; 0: no verdict
 };

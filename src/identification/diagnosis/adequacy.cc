@@ -64,7 +64,6 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                     .misfit = test.misfit_over_noise * test.noise * data.response_unit(),
                     .p_value = test.p_value,
                     .causes = {causes.begin(), causes.end()},
-                    .misfit_over_half_gap = {},
                     .tried = test.fits.size()};
   // Noise whatever the model: where strokes of both directions come back what does not repeat with
   // them, else what differs between neighbouring samples.

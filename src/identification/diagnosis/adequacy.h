@@ -45,9 +45,9 @@ void GradeUse(const Thresholds& thresholds, FitResult& result);
 /// True unless the loop is so small that its shape and height are those of the rest of the force.
 bool IsLoopSeen(const FitResult& result, const Thresholds& thresholds);
 
-/// Sets the verdict on each parameter: the last in the order of Identifiability of what its interval
-/// says (not identifiable without one, bounded below where it is open above) and what each finding
-/// that names it calls for (kFindings). What the user holds is identifiable.
+/// Sets the verdict on each parameter: the last in the order of Identifiability of what its
+/// interval says (not identifiable without one, bounded below where it is open above) and what each
+/// finding that names it calls for (kFindings). What the user holds is identifiable.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
 /// Withdraws intervals and findings on parameters where the misfit is no noise and as large as

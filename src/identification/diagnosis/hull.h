@@ -20,8 +20,7 @@ namespace mindahl::identification {
 void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 
 /// Extends intervals by those of Mindlin's contact in a compliant rig, where the record does not
-/// distinguish it: a rig makes a loop more angular, as a smaller α does, so that where Mindlin's
-/// exponent lies above the interval of α for a rigid rig a compliant one may restore it. A contact
+/// distinguish it: a rig makes a loop more angular, as a smaller α than Mindlin's does. A contact
 /// far stiffer than its rig is Jenkins' element, the same curve with no other α: it is left out.
 /// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
 std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters);

@@ -13,36 +13,29 @@ namespace mindahl::identification {
 
 namespace {
 
-/// Derivative by time, by differences to both sides; 0 where time does not go on.
+/// Derivative by time at a sample, by differences to both sides; 0 where time does not go on.
 /// @param turns  ascending; none looks beyond: one is the stroke's that ends there
-std::vector<double> Derive(std::span<const double> values, std::span<const double> time,
-                           std::span<const std::size_t> turns = {}) {
-  std::vector<double> rate(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool is_turn = i > 0 && std::ranges::binary_search(turns, i);
-    const std::size_t before = i > 0 ? i - 1 : i;
-    const std::size_t after = i + 1 < values.size() && !is_turn ? i + 1 : i;
-    const double step = time[after] - time[before];
-    rate[i] = step > 0 ? (values[after] - values[before]) / step : 0.0;
-  }
-  return rate;
+double RateAt(std::size_t i, std::span<const double> values, std::span<const double> time,
+              std::span<const std::size_t> turns = {}) {
+  const bool is_turn = i > 0 && std::ranges::binary_search(turns, i);
+  const std::size_t before = i > 0 ? i - 1 : i;
+  const std::size_t after = i + 1 < values.size() && !is_turn ? i + 1 : i;
+  const double step = time[after] - time[before];
+  return step > 0 ? (values[after] - values[before]) / step : 0.0;
 }
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
 /// would see four times as much of the displacement's noise.
-std::vector<double> DeriveTwice(std::span<const double> values, std::span<const double> time) {
+double CurvatureAt(std::size_t sample, std::span<const double> values,
+                   std::span<const double> time) {
   constexpr std::size_t kStep = 2;
-  std::vector<double> second(values.size());
-  for (std::size_t k = 0; k < values.size() && values.size() > 2 * kStep; ++k) {
-    const std::size_t i = std::clamp(k, kStep, values.size() - 1 - kStep);
-    const double back = time[i] - time[i - kStep];
-    const double on = time[i + kStep] - time[i];
-    if (!(back > 0 && on > 0)) continue;
-    second[k] = 2 *
-                ((values[i + kStep] - values[i]) / on - (values[i] - values[i - kStep]) / back) /
-                (back + on);
-  }
-  return second;
+  if (values.size() <= 2 * kStep) return 0.0;
+  const std::size_t i = std::clamp(sample, kStep, values.size() - 1 - kStep);
+  const double back = time[i] - time[i - kStep];
+  const double on = time[i + kStep] - time[i];
+  if (!(back > 0 && on > 0)) return 0.0;
+  return 2 * ((values[i + kStep] - values[i]) / on - (values[i] - values[i - kStep]) / back) /
+         (back + on);
 }
 
 /// Sets the travel since the displacement was last read anew: what is repeated was read at the
@@ -111,17 +104,13 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
     const std::span<Place> of = record.Of(std::span(places));
     std::vector<double> time = record.time;
     for (double& value : time) value *= record.units.half_duration;
-    const std::vector<double> velocity = Derive(record.displacement, time);
-    const std::vector<double> acceleration = DeriveTwice(record.displacement, time);
-    const std::vector<double> rate = Derive(whole, time, record.reversals);
-    const std::vector<double> curvature = DeriveTwice(whole, time);
     for (std::size_t i = 0; i < record.size(); ++i) {
       of[i] = {.displacement = is_forced ? own[i] : record.displacement[i],
                .time = time[i],
-               .velocity = velocity[i],
-               .acceleration = acceleration[i],
-               .rate = rate[i],
-               .curvature = curvature[i],
+               .velocity = RateAt(i, record.displacement, time),
+               .acceleration = CurvatureAt(i, record.displacement, time),
+               .rate = RateAt(i, whole, time, record.reversals),
+               .curvature = CurvatureAt(i, whole, time),
                .force = is_forced ? record.force[i] : own[i],
                .peak = peak,
                .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],

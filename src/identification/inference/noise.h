@@ -40,9 +40,8 @@ struct Autocorrelation {
   /// independent one does (Bartlett 1946).
   [[nodiscard]] double SquaredCorrelations() const;
 
-  /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it.
-  /// @param columns  J of one record, a row a sample in order of time
-  /// @returns columns², relative error below 1e-8
+  /// JᵀRJ with R the correlation matrix of one record's residuals, which is not formed: columns²,
+  /// relative error below 1e-8. J has a row a sample, in order of time.
   [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 };
 
@@ -72,8 +71,7 @@ struct Noise {
 
   /// Returns JᵀRJ of all records, each times its own variance over that of all; where the
   /// displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's fraction of the noise and E the
-  /// K drawn residuals.
-  /// @param process   whose correlations R has
+  /// K drawn residuals. R has the correlations of the process.
   /// @param jacobian  weighted, of every sample
   [[nodiscard]] Eigen::MatrixXd Product(std::span<const ScaledRecord> records,
                                         const Autocorrelation& process,
@@ -101,8 +99,8 @@ struct Evidence {
 /// Returns that of a solution's residuals, of samples no fewer than determine its free parameters.
 Evidence EvidenceOf(const Problem& problem, std::span<const double> theta);
 
-/// Returns the mean squares of each record's residuals over that of all.
-/// @param residual  weighted, of every sample, not all zero
+/// Returns the mean squares of each record's residuals, weighted and not all zero, over that of
+/// all.
 std::vector<double> VariancesOfRecords(const ScaledRecords& data, std::span<const double> residual);
 
 }  // namespace mindahl::identification

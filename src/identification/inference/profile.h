@@ -6,10 +6,8 @@
 #include "identification/inference/estimates.h"
 #include "mindahl/identification/fit_result.h"
 
-/// Intervals by the likelihood, where the parabola of its maximum is wrong.
-///
-/// Far from gross slip, beside a rig or a parallel spring the likelihood is a long curved valley
-/// (docs/theory.md §10), of which the Jacobian at the best fit sees the floor there and no further.
+/// Intervals by the likelihood, where the parabola of its maximum is wrong: far from gross slip,
+/// beside a rig or a parallel spring it is a long curved valley (docs/theory.md §10).
 namespace mindahl::identification {
 
 using Region = std::vector<std::vector<double>>;  // θ of fits that are not rejected
