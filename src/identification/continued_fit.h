@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,17 +22,6 @@ inline void StartFrom(const FitResult& fit, FitOptions& options) {
   }
 }
 
-/// Fits; a result without parameters where a term is not identifiable, a rig softer than it can be,
-/// or samples are too few.
-inline FitResult FitIfPossible(std::span<const loop::RecordView> records, FitOptions options,
-                               Depth depth) {
-  try {
-    return Fitter(std::move(options)).Fit(records, depth);
-  } catch (const InvalidArgument&) {
-    return {};
-  }
-}
-
 /// Samples [begin, end) of a record.
 struct SampleRange {
   std::size_t record = 0;
@@ -41,24 +29,22 @@ struct SampleRange {
   std::size_t end = 0;
 };
 
-/// Leaves samples out of a fit; they still make history.
-inline void HoldOut(std::span<const SampleRange> held_out,
-                    std::span<const loop::RecordView> records, FitOptions& options) {
+/// Fits without some samples, which still make history; without parameters and not converged where
+/// a term is not identifiable, the rig softer than it can be, or samples are too few.
+inline FitResult FitWithout(std::span<const SampleRange> held_out,
+                            std::span<const loop::RecordView> records, FitOptions options,
+                            Depth depth = Depth::kEstimate) {
   std::vector<std::vector<bool>>& masks = options.preparation.held_out;
   masks.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) masks[r].resize(records[r].size());
   for (const auto& [record, begin, end] : held_out) {
     for (std::size_t i = begin; i < end; ++i) masks[record][i] = true;
   }
-}
-
-/// Fits at Depth::kEstimate without some samples; empty where that does not converge.
-inline std::optional<FitResult> FitWithout(std::span<const SampleRange> held_out,
-                                           std::span<const loop::RecordView> records,
-                                           FitOptions options) {
-  HoldOut(held_out, records, options);
-  FitResult fit = FitIfPossible(records, std::move(options), Depth::kEstimate);
-  return fit.converged ? std::optional(std::move(fit)) : std::nullopt;
+  try {
+    return Fitter(std::move(options)).Fit(records, depth);
+  } catch (const InvalidArgument&) {
+    return {};
+  }
 }
 
 }  // namespace mindahl::identification

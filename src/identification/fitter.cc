@@ -238,8 +238,7 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
   const std::vector<SampleRange> aside =
       FirstStrokesAside(data, result, options.thresholds.larger_rms);
   if (aside.empty()) return result;
-  HoldOut(aside, records, options);
-  FitResult without = FitOnce(records, depth, std::move(options));
+  FitResult without = FitWithout(aside, records, std::move(options), depth);
   return without.adequacy.verdict == AdequacyVerdict::kAdequate ? without : result;
 }
 

@@ -135,26 +135,27 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     others.initial_state = InitialState::kVirgin;
   }
   if (step > options.thresholds.coarse_step) return choice;
-  const std::optional<FitResult> other = FitWithout({}, records, others);
+  const FitResult other = FitWithout({}, records, others);
   // At a bound of α, σ or Tc the law turns into another one.
-  const auto is_at_bound = [&](const char* name) { return other->Find(name)->is_at_bound(); };
-  if (!other || std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, is_at_bound)) {
+  const auto is_at_bound = [&](const char* name) { return other.Find(name)->is_at_bound(); };
+  if (!other.converged ||
+      std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, is_at_bound)) {
     if (!is_one_curve) choice.preferred = fit.model;
     return choice;
   }
-  const FitResult& better = other->likelihood_rms < fit.likelihood_rms ? *other : fit;
+  const FitResult& better = other.likelihood_rms < fit.likelihood_rms ? other : fit;
   const Evidence evidence{data.counted, IndependentSamples(data, better, options.thresholds)};
   const auto criterion = [&](const FitResult& of) {
     const double rms = of.likelihood_rms / data.response_unit();
     return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());
   };
-  double delta = criterion(*other) - criterion(fit);
+  double delta = criterion(other) - criterion(fit);
   // If the laws are one curve, a virgin start counts only if it is better.
   const auto is_undecided = [&](double difference) {
     return std::abs(difference) < options.thresholds.undecided;
   };
   if (is_one_curve && (delta > 0 || is_undecided(delta))) return choice;
-  choice.law = other->law;
+  choice.law = other.law;
   // Returns the difference of both laws fitted again, without some samples or with one more term.
   const auto refitted = [&](std::span<const SampleRange> held_out,
                             std::string_view term) -> std::optional<double> {
@@ -165,10 +166,10 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
       same.terms.emplace_back(term);
       other_same.terms.emplace_back(term);
     }
-    const auto own = FitWithout(held_out, records, std::move(same));
-    const auto of_other = FitWithout(held_out, records, std::move(other_same));
-    if (!own || !of_other) return std::nullopt;
-    return criterion(*of_other) - criterion(*own);
+    const FitResult own = FitWithout(held_out, records, std::move(same));
+    const FitResult of_other = FitWithout(held_out, records, std::move(other_same));
+    if (!own.converged || !of_other.converged) return std::nullopt;
+    return criterion(of_other) - criterion(own);
   };
   // Under cycles of one amplitude the laws differ only in a transient, which a drift resembles: if
   // the residuals show one, the other law must also fit better with that term in both fits.
@@ -183,8 +184,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   // the loop is short of slip, where no such reversals give Masing's contact the loop of Dahl's,
   // and Dahl's leaves but noise.
   const bool is_for_dahl = !is_undecided(delta) && (delta > 0) != is_masing;
-  const FitResult& masing = is_masing ? fit : *other;
-  const FitResult& dahl = is_masing ? *other : fit;
+  const FitResult& masing = is_masing ? fit : other;
+  const FitResult& dahl = is_masing ? other : fit;
   std::vector<SampleRange> past;
   if (is_open && is_for_dahl) past = UnknownPast(records, data, fit, dahl);
   bool is_told = true;

@@ -48,12 +48,12 @@ std::optional<double> PredictCycles(std::span<const RecordView> records, const F
   for (std::size_t fold = 0; fold < folds; ++fold) {
     std::vector<SampleRange> held_out;
     for (std::size_t c = fold; c < cycles.size(); c += folds) held_out.push_back(cycles[c]);
-    const std::optional<FitResult> fit = FitWithout(held_out, records, options);
-    if (!fit) return std::nullopt;
+    const FitResult fit = FitWithout(held_out, records, options);
+    if (!fit.converged) return std::nullopt;
     for (const auto& [record, begin, end] : held_out) {
       for (std::size_t i = begin; i < end; ++i) {
         if (counted.records[record].counts[i] == 0) continue;
-        squares += fit->records[record].residual[i] * fit->records[record].residual[i];
+        squares += fit.records[record].residual[i] * fit.records[record].residual[i];
         ++predicted;
       }
     }

@@ -281,7 +281,7 @@ class Selection {
     constexpr int kEnoughIterations = 150;  // what needs more is nearly confounded with the rest
     options.preparation.drawn = drawn_;
     options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-    return FitIfPossible(records_, std::move(options), depth);
+    return FitWithout({}, records_, std::move(options), depth);
   }
 
   [[nodiscard]] bool Gains(const FitResult& fit) const {
