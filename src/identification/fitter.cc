@@ -287,16 +287,6 @@ FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitO
   return result;
 }
 
-/// True if the next fit may start at the last one's end: a single minimum, not at a bound.
-bool MayContinueFrom(const FitResult& result) {
-  return result.converged && TellsTheLaw(result) &&
-         std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
-           return estimate.is_at_bound() ||
-                  (estimate.name == "alpha" && estimate.status == ParameterStatus::kFixed &&
-                   estimate.value == 0);
-         });
-}
-
 }  // namespace
 
 void Validate(const FitOptions& options) {
@@ -343,7 +333,12 @@ const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
 }
 
 const FitResult& Fitter::Continue(const RecordView& record, Depth depth) {
-  if (MayContinueFrom(result_)) {
+  const auto is_limited = [](const ParameterEstimate& estimate) {
+    const bool is_fixed = estimate.status == ParameterStatus::kFixed;
+    return estimate.is_at_bound() || (is_fixed && estimate.name == "alpha" && estimate.value == 0);
+  };
+  if (result_.converged && TellsTheLaw(result_) &&
+      std::ranges::none_of(result_.parameters, is_limited)) {
     FitOptions continued = options_;
     StartFrom(result_, continued);
     const double as_good = options_.thresholds.larger_rms * result_.rms;

@@ -88,16 +88,6 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
   return candidates;
 }
 
-bool IsNearlyWhite(const FitResult& fit, const Thresholds& thresholds) {
-  return fit.rms * fit.rms <= thresholds.nearly_white * WhiteVariance(fit);
-}
-
-bool BoundsSlipForce(const FitResult& fit, const Thresholds& thresholds) {
-  const ParameterEstimate& slip_force = fit.parameters[kSlipForce];
-  return slip_force.lower95 && slip_force.upper95 &&
-         *slip_force.upper95 <= thresholds.widest_ratio * *slip_force.lower95;
-}
-
 /// True if the search of a term stopped at a bound of the program's own: no parameter is known.
 /// Where a sliding contact was unloaded is no such term; others end where the theory does.
 bool StopsAtLimit(const FitResult& fit) {
@@ -109,29 +99,6 @@ bool StopsAtLimit(const FitResult& fit) {
   });
 }
 
-/// Includes what alternatives make of the law; Tc no further than a loop that slides carries.
-/// @param alternatives  their scores have steps from the fit's law
-void IncludeAlternatives(std::span<const TermCandidate> alternatives, const Thresholds& thresholds,
-                         FitResult& fit) {
-  const std::optional<double> half_gap = fit.MeasuredHalfGap();
-  for (const TermCandidate& alternative : alternatives) {
-    for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
-      ParameterEstimate& estimate = fit.parameters[p];
-      if (!estimate.lower95 || !estimate.upper95) continue;
-      const double step = std::clamp(alternative.score->law[p], -kFarthestStep, kFarthestStep);
-      double value =
-          p == kShape ? std::max(0.0, estimate.value + step) : estimate.value * std::exp(step);
-      if (p == kSlipForce && half_gap && loop::Slides(fit.WidestRecord().facts)) {
-        value = std::clamp(value, std::min(*half_gap, estimate.value),
-                           std::max(fit.PeakForce(), estimate.value));
-      }
-      Include(estimate, {.lower = value, .upper = value});
-    }
-  }
-  Append(fit.findings, FindWideIntervals(fit, thresholds));
-  Judge(fit.parameters, fit.findings);
-}
-
 /// Adds terms to a law: a few one after the other, or all common ones.
 class Selection {
  public:
@@ -140,20 +107,20 @@ class Selection {
       : records_(records),
         drawn_(loop::DrawReadings(loop::Prepare(records, options.preparation))),
         facts_(law.WidestRecord().facts),
-        law_bounds_slip_force_(BoundsSlipForce(law, options.thresholds)),
         candidates_(CandidatesOf(records, options, law)),
-        base_{.options = options, .fit = law} {
+        base_{.options = options, .fit = law},
+        law_bounds_slip_force_(BoundsSlipForce(law)) {
     // Fitted as the candidates are, without an upper bound on Tc: a missing term may drive it high.
     base_ = law_ = FitWith({});
   }
 
   TermSelection Run(FitResult law, MostTerms most) {
-    while (base_.added.size() < kMostAlone && !IsNearlyWhite(base_.fit, Limits()) && Round()) {
+    while (base_.added.size() < kMostAlone && !IsNearlyWhite(base_.fit) && Round()) {
     }
     FitResult last;
     // Short of slip the law itself has the forms of several: together they would take its place.
     const bool may_be_common = most == MostTerms::kCommon && Slides();
-    if (may_be_common && !IsNearlyWhite(base_.fit, Limits())) last = FitCommon();
+    if (may_be_common && !IsNearlyWhite(base_.fit)) last = FitCommon();
     if (!IsFitted(last) && !base_.added.empty()) last = FitLast(base_);
     const bool is_kept = IsFitted(last);
     for (TermCandidate& candidate : candidates_) {
@@ -169,7 +136,7 @@ class Selection {
         return IsAdded(alternative.name) ||
                (is_settled && alternative.score->rms > Limits().larger_rms * last.rms);
       });
-      IncludeAlternatives(alternatives_, Limits(), last);
+      IncludeAlternatives(last);
     }
     TermSelection result = std::move(is_kept ? base_ : law_);
     result.fit = std::move(is_kept ? last : law);
@@ -212,6 +179,15 @@ class Selection {
   }
   /// True of a loop that slides, a large force of the position beside it or not.
   [[nodiscard]] bool Slides() const { return loop::Slides(facts_) || loop::HasEvenGap(facts_); }
+
+  [[nodiscard]] bool IsNearlyWhite(const FitResult& fit) const {
+    return fit.rms * fit.rms <= Limits().nearly_white * WhiteVariance(fit);
+  }
+  [[nodiscard]] bool BoundsSlipForce(const FitResult& fit) const {
+    const ParameterEstimate& slip_force = fit.parameters[kSlipForce];
+    return slip_force.lower95 && slip_force.upper95 &&
+           *slip_force.upper95 <= Limits().widest_ratio * *slip_force.lower95;
+  }
 
   /// Scores the candidates at the present solution and returns those with an effect, best first.
   std::vector<TermCandidate*> Score() {
@@ -290,7 +266,7 @@ class Selection {
   /// True if Tc leaves the half gap that was measured, and more than noise is left.
   [[nodiscard]] bool Leaves(const FitResult& fit) const {
     return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
-           !IsNearlyWhite(fit, Limits());
+           !IsNearlyWhite(fit);
   }
 
   /// Says why a larger model does not replace the present one; empty where it does.
@@ -352,8 +328,7 @@ class Selection {
     FitOptions options = model.options;
     StartFrom(model.fit, options);
     FitResult last = FitTo(std::move(options), Depth::kFull);
-    if (IsFitted(last) && !Leaves(last) &&
-        (!law_bounds_slip_force_ || BoundsSlipForce(last, Limits()))) {
+    if (IsFitted(last) && !Leaves(last) && (!law_bounds_slip_force_ || BoundsSlipForce(last))) {
       return last;
     }
     return {};
@@ -385,13 +360,35 @@ class Selection {
     return last;
   }
 
+  /// Includes what alternatives make of the law; Tc no further than a loop that slides carries.
+  void IncludeAlternatives(FitResult& fit) const {
+    const std::optional<double> half_gap = fit.MeasuredHalfGap();
+    for (const TermCandidate& alternative : alternatives_) {
+      for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
+        ParameterEstimate& estimate = fit.parameters[p];
+        if (!estimate.lower95 || !estimate.upper95) continue;
+        const double step = std::clamp(alternative.score->law[p], -kFarthestStep, kFarthestStep);
+        double value =
+            p == kShape ? std::max(0.0, estimate.value + step) : estimate.value * std::exp(step);
+        if (p == kSlipForce && half_gap && loop::Slides(fit.WidestRecord().facts)) {
+          value = std::clamp(value, std::min(*half_gap, estimate.value),
+                             std::max(fit.PeakForce(), estimate.value));
+        }
+        Include(estimate, {.lower = value, .upper = value});
+      }
+    }
+    Append(fit.findings, FindWideIntervals(fit, Limits()));
+    Judge(fit.parameters, fit.findings);
+  }
+
   std::span<const RecordView> records_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
-  bool law_bounds_slip_force_;                        // without terms
   std::vector<TermCandidate> candidates_;
-  TermSelection law_;                        // fitted at Depth::kEstimate, without terms
-  TermSelection base_;                       // likewise, with the terms that were added
+  TermSelection law_;           // fitted at Depth::kEstimate, without terms
+  TermSelection base_;          // likewise, with the terms that were added
+  bool law_bounds_slip_force_;  // without terms
+  /// Their scores have steps from the law with what was added in their place.
   std::vector<TermCandidate> alternatives_;  // to the first that was added of a round
 };
 

@@ -336,14 +336,14 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 }
 
 std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
-  for (const std::size_t p : problem.parameters.free()) {
-    const Parameter& parameter = problem.parameters[p];
-    const BoundSide side = SideOf(parameter, solution.theta[p]);
-    if (parameter.term->positive || p == kShape || !IsSearchLimit(parameter, side)) continue;
-    Finding finding{.code = "search_limit", .parameters = {problem.parameters.NameOf(p)}};
+  const Parameters& parameters = problem.parameters;
+  for (const std::size_t p : parameters.free()) {
+    const BoundSide side = SideOf(parameters[p], solution.theta[p]);
+    if (parameters[p].term->positive || p == kShape || !IsSearchLimit(parameters[p], side))
+      continue;
+    Finding finding{.code = "search_limit", .parameters = {parameters.NameOf(p)}};
     for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
-      const bool is_fixed = problem.parameters[law].fixed;
-      if (!is_fixed) finding.parameters.push_back(problem.parameters.NameOf(law));
+      if (!parameters[law].fixed) finding.parameters.push_back(parameters.NameOf(law));
     }
     return finding;
   }

@@ -26,11 +26,10 @@ double RateAt(std::size_t i, std::span<const double> values, std::span<const dou
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
 /// would see four times as much of the displacement's noise.
-double CurvatureAt(std::size_t sample, std::span<const double> values,
-                   std::span<const double> time) {
+double CurvatureAt(std::size_t at, std::span<const double> values, std::span<const double> time) {
   constexpr std::size_t kStep = 2;
   if (values.size() <= 2 * kStep) return 0.0;
-  const std::size_t i = std::clamp(sample, kStep, values.size() - 1 - kStep);
+  const std::size_t i = std::clamp(at, kStep, values.size() - 1 - kStep);
   const double back = time[i] - time[i - kStep];
   const double on = time[i + kStep] - time[i];
   if (!(back > 0 && on > 0)) return 0.0;
