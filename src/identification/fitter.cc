@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "identification/continued_fit.h"
-#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
@@ -296,19 +295,18 @@ void Validate(const FitOptions& options) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
   }
   loop::Validate(options.preparation);
+  const loop::Channel response = options.response();
   for (const std::string& name : options.terms) {
-    const Term* const term = FindTerm(name, options.response());
+    const Term* const term = FindTerm(name, response);
     using enum Presence;
     if (term == nullptr || term->of_column || term->presence == kAlways ||
         term->presence == kOffsets || term->presence == kLoadSeries) {
       throw InvalidArgument(fmt::format("'{}' is not a term that can be added", name));
     }
-    RequirePlace(*term, options.response());
+    RequirePlace(*term, response);
   }
-  if (!options.covariates.empty()) {
-    RequirePlace(TermOf(TermId::kCovariate, options.response()), options.response());
-  }
-  if (options.response() == loop::Channel::kDisplacement && options.force_noise) {
+  if (!options.covariates.empty()) RequirePlace(TermOf(TermId::kCovariate, response), response);
+  if (response == loop::Channel::kDisplacement && options.force_noise) {
     throw InvalidArgument("noise of the force, which is imposed and taken as exact: leave it out");
   }
   if (options.response_noise())

@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <vector>
 
 #include "identification/continued_fit.h"
-#include "identification/diagnosis/adequacy.h"
 #include "identification/solved_fit.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -137,9 +137,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   if (step > options.thresholds.coarse_step) return choice;
   const FitResult other = FitWithout({}, records, others);
   // At a bound of α, σ or Tc the law turns into another one.
-  const auto is_at_bound = [&](const char* name) { return other.Find(name)->is_at_bound(); };
-  if (!other.converged ||
-      std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, is_at_bound)) {
+  if (!other.converged || std::ranges::any_of(other.parameters | std::views::take(kSlipForce + 1),
+                                              &ParameterEstimate::is_at_bound)) {
     if (!is_one_curve) choice.preferred = fit.model;
     return choice;
   }

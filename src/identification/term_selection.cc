@@ -10,7 +10,6 @@
 #include <ranges>
 #include <utility>
 
-#include "core/extremes.h"
 #include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
@@ -68,7 +67,7 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
     const bool all_have_it = std::ranges::all_of(records, [&](const RecordView& record) {
       return std::ranges::count(record.covariates, column.name, &loop::Covariate::name) > 0;
     });
-    const auto [lowest, highest] = ExtremesOf(column.values);
+    const auto [lowest, highest] = std::ranges::minmax(column.values);
     if (is_fitted(column) || !all_have_it || !(highest > lowest)) continue;
     TermCandidate& candidate = candidates.emplace_back();
     candidate.name = NameOfCovariate(column.name);

@@ -13,7 +13,6 @@
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
 

@@ -6,7 +6,6 @@
 
 #include "core/extremes.h"
 #include "core/probability.h"
-#include "identification/diagnosis/adequacy.h"
 #include "identification/solve/search.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
