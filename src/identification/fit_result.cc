@@ -77,10 +77,10 @@ double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, doub
   return models::ContactAmplitude(*fit.model, law, fit.rig, amplitude);
 }
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
-  return std::max(ErrorTowards(estimate, -kFar), ErrorTowards(estimate, kFar));
+  return std::max(ErrorTowards(estimate, -kUnbounded), ErrorTowards(estimate, kUnbounded));
 }
 
 double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
@@ -89,7 +89,7 @@ double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) 
   const Term* term = FindTerm(TermNameOf(estimate.name));
   const bool is_positive = term != nullptr && term->positive;
   const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
-  if (!has_error || !end || (is_positive && !(*end > 0))) return kFar;
+  if (!has_error || !end || (is_positive && !(*end > 0))) return kUnbounded;
   const double way = is_positive ? estimate.value * std::abs(std::log(*end / estimate.value))
                                  : std::abs(*end - estimate.value);
   const double error = way / StudentQuantile(degrees_of_freedom, confidence);

@@ -56,7 +56,23 @@ Linearization WithPriors(const Problem& problem, std::span<const double> theta, 
   return at;
 }
 
-Eigen::MatrixXd Estimates::FindDirections(const Eigen::MatrixXd& priors) {
+Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
+                     const FitOptions& options, Linearization at)
+    : problem_(problem),
+      solution_(solution),
+      noise_(noise),
+      options_(options),
+      quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
+                                options.confidence)),
+      variance_(noise.variance * noise.repeating),
+      at_(std::move(at)) {
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  if (free.empty()) return;
+  // A prior is one more reading, weighted by the noise of the others.
+  Eigen::VectorXd weights(std::ssize(free));
+  std::ranges::transform(free, weights.begin(),
+                         [&](std::size_t p) { return problem.parameters[p].prior_root_weight; });
+  const Eigen::MatrixXd priors = weights.asDiagonal();
   // Singular values below this fraction of the largest are rounding of unit columns.
   constexpr double kRankTolerance = 1e-11;
   // A parameter with more than this component in a direction without effect is not determined.
@@ -76,29 +92,11 @@ Eigen::MatrixXd Estimates::FindDirections(const Eigen::MatrixXd& priors) {
   open_directions_ = static_cast<std::size_t>(size - rank);
   const Eigen::ArrayXXd open = svd.matrixV().rightCols(size - rank).cwiseAbs();
   determined_ = (open <= kOpenComponent).rowwise().all();
-  const Eigen::ArrayXXd directions = scale.asDiagonal() * svd.matrixV().leftCols(rank);
-  return directions.rowwise() / values.head(rank).transpose().array();
-}
-
-Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     const FitOptions& options, Linearization at)
-    : problem_(problem),
-      solution_(solution),
-      noise_(noise),
-      options_(options),
-      quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
-                                options.confidence)),
-      variance_(noise.variance * noise.repeating),
-      at_(std::move(at)) {
-  const std::vector<std::size_t>& free = problem.parameters.free();
-  if (free.empty()) return;
-  // A prior is one more reading, weighted by the noise of the others.
-  Eigen::VectorXd weights(std::ssize(free));
-  std::ranges::transform(free, weights.begin(),
-                         [&](std::size_t p) { return problem.parameters[p].prior_root_weight; });
-  const Eigen::MatrixXd priors = weights.asDiagonal();
-  const Eigen::MatrixXd directions = FindDirections(priors);
-  if (directions.cols() == 0) return;  // nothing is determined
+  if (rank == 0) return;  // nothing is determined
+  // Directions H with an effect: a column each, in units of θ.
+  const Eigen::ArrayXXd of_unit_columns = scale.asDiagonal() * svd.matrixV().leftCols(rank);
+  const Eigen::MatrixXd directions =
+      of_unit_columns.rowwise() / values.head(rank).transpose().array();
   // JH has orthonormal columns, so that the noise makes a product of order one: between two
   // inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
   Eigen::MatrixXd product =

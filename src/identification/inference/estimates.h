@@ -93,10 +93,6 @@ class Estimates {
   /// Returns the place among the free parameters; nothing of one that is fixed or undetermined.
   [[nodiscard]] std::optional<Eigen::Index> PlaceOf(std::size_t parameter) const;
 
-  /// Finds the directions with an effect: a column each, in units of θ, orthonormal when J is
-  /// applied to them.
-  [[nodiscard]] Eigen::MatrixXd FindDirections(const Eigen::MatrixXd& priors);
-
   const Problem& problem_;
   const Solution& solution_;
   const Noise& noise_;
