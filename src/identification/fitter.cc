@@ -238,7 +238,9 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
       FirstStrokesAside(data, result, options.thresholds.larger_rms);
   if (aside.empty()) return result;
   FitResult without = FitWithout(aside, records, std::move(options), depth);
-  return without.adequacy.verdict == AdequacyVerdict::kAdequate ? without : result;
+  const bool is_adequate =
+      without.converged && without.adequacy.verdict == AdequacyVerdict::kAdequate;
+  return is_adequate ? without : result;
 }
 
 /// Returns the options of a second fit, with a slip force no larger than the largest force, where
