@@ -28,7 +28,7 @@ constexpr std::size_t kBlock = 64;  // samples; their columns stay in the neares
 constexpr std::size_t kLanes = 8;   // doubles in the widest vector; divides kBlock
 using Column = std::array<double, kBlock>;
 
-constexpr std::int64_t kExponentBias = std::int64_t{1023} << 52;
+constexpr std::uint64_t kExponentBias = std::uint64_t{1023} << 52;
 
 /// ln 2 in two parts, the first of 33 bits: its products with whole numbers are exact.
 constexpr double kLog2High = 6.93147180369123816490e-01;
@@ -46,17 +46,13 @@ struct Reduction {
   double s;
 };
 MINDAHL_INLINE Reduction Reduce(double w, double z) {
-  constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
-  constexpr std::int64_t kIntegers = 0x4330000000000000;  // 2⁵²: its last bits count ones
+  constexpr std::uint64_t kRootHalf = 0x3fe6a09e667f3bcd;
+  constexpr std::uint64_t kIntegers = 0x4330000000000000;  // 2⁵²: its last bits count ones
   constexpr double kBiased = 4503599627370496.0 + 1023.0;
   const auto bits = std::bit_cast<std::uint64_t>(z);
-  const std::uint64_t biased_k =
-      (bits - static_cast<std::uint64_t>(kRootHalf) + static_cast<std::uint64_t>(kExponentBias)) >>
-      52;
-  const double k =
-      std::bit_cast<double>(biased_k | static_cast<std::uint64_t>(kIntegers)) - kBiased;
-  const double m =
-      std::bit_cast<double>(bits - (biased_k << 52) + static_cast<std::uint64_t>(kExponentBias));
+  const std::uint64_t biased_k = (bits - kRootHalf + kExponentBias) >> 52;
+  const double k = std::bit_cast<double>(biased_k | kIntegers) - kBiased;
+  const double m = std::bit_cast<double>(bits - (biased_k << 52) + kExponentBias);
   const std::uint64_t is_near = 0 - (((biased_k ^ 1023) - 1) >> 63);  // k = 0
   return {k, Choose(is_near, -w, m - 1) / Choose(is_near, 2 - w, m + 1)};
 }

@@ -11,13 +11,10 @@ namespace mindahl::models {
 
 ContactState::ContactState(const FrictionModel& model, const BranchLaw& law,
                            const ContactStateOptions& options)
-    : model_(&model),
-      law_(law),
-      unloaded_displacement_(options.unloaded_displacement),
-      sprung_(!IsRigid(options.rig)) {
+    : model_(&model), law_(law), unloaded_displacement_(options.unloaded_displacement) {
   Validate(law);
   RequireWithinReach("unloaded displacement [m]", unloaded_displacement_);
-  if (sprung_) spring_travel_ = SpringTravel(law, options.rig);
+  spring_travel_ = SpringTravel(law, options.rig);
   Reset();
 }
 
@@ -35,7 +32,9 @@ ScaledBranch ContactState::Open(const Branch& branch, double origin_force) const
 }
 
 ContactState::Shape ContactState::ShapeOn(const ScaledBranch& branch) const {
-  if (sprung_) return models::ShapeOn(SprungShape{law_.shape_exponent, spring_travel_}, branch);
+  if (spring_travel_ > 0) {
+    return models::ShapeOn(SprungShape{law_.shape_exponent, spring_travel_}, branch);
+  }
   return backbone::WithShape(law_.shape_exponent,
                              [](const auto& contact) -> Shape { return contact; });
 }
@@ -66,20 +65,20 @@ ContactState::Entry ContactState::Enter(double displacement) const {
     course.branch = entry.open > open_before    ? open_from_here()
                     : entry.open == open_before ? course_.branch
                                                 : suspended_[entry.open - 1];
-    if (entry.open >= 2)
+    if (entry.open >= 2) {
       end = std::min(end, direction * ClosingDisplacement(entry.open, origin_of));
+    }
   }
-  const ScaledBranch& branch = course.branch;
   course.direction = direction;
-  course.start = direction * branch.origin;
+  course.start = direction * course.branch.origin;
   course.end = end;
-  course.rise = direction * branch.height;
+  course.rise = direction * course.branch.height;
   return entry;
 }
 
 void ContactState::Turn(double displacement) {
   const Entry entry = Enter(displacement);
-  if (sprung_) shape_ = ShapeOn(entry.course.branch);
+  if (spring_travel_ > 0) shape_ = ShapeOn(entry.course.branch);
   if (entry.open > suspended_.size() + 1) {
     suspended_.push_back(course_.branch);
   } else {
@@ -90,7 +89,8 @@ void ContactState::Turn(double displacement) {
 
 double ContactState::PeekAcrossBranches(double displacement) const {
   const Course course = Enter(displacement).course;
-  return Force(course.ForceOverSlip(sprung_ ? ShapeOn(course.branch) : shape_, displacement));
+  const Shape& shape = spring_travel_ > 0 ? ShapeOn(course.branch) : shape_;
+  return Force(course.ForceOverSlip(shape, displacement));
 }
 
 double ContactState::TranscendentalShare(const Shape& shape, double y) {

@@ -1,6 +1,5 @@
 #include "mindahl/models/excitation.h"
 
-#include <algorithm>
 #include <boost/math/special_functions/sin_pi.hpp>
 #include <cmath>
 
@@ -17,29 +16,22 @@ double UnitWave(Waveform waveform, double phase) {
   return 4 * phase - 4;
 }
 
-void RequireExcitation(const ExcitationOptions& options) {
+}  // namespace
+
+Excitation MakeExcitation(const ExcitationOptions& options) {
   RequirePositive("amplitude [m]", options.amplitude);
   RequirePositive("cycles [-]", options.cycles);
   RequirePositive("frequency [Hz]", options.frequency);
   RequireFinite("growth [-]", options.growth);
   if (options.growth < 1) ThrowInvalid("growth [-]", options.growth, "must be >= 1");
-  if (options.samples_per_cycle < 4) {
-    ThrowInvalid("samples per cycle [-]", static_cast<double>(options.samples_per_cycle),
-                 "must be >= 4");
-  }
+  const auto per_cycle = static_cast<double>(options.samples_per_cycle);
+  if (per_cycle < 4) ThrowInvalid("samples per cycle [-]", per_cycle, "must be >= 4");
   constexpr double kMostSamples = 1e9;
-  const double samples = options.cycles * static_cast<double>(options.samples_per_cycle);
+  const double samples = options.cycles * per_cycle;
   if (samples < 0.5 || samples > kMostSamples) {
     ThrowInvalid("cycles times samples per cycle [-]", samples, "must be >= 1/2 and <= 1e9");
   }
-}
-
-}  // namespace
-
-Excitation MakeExcitation(const ExcitationOptions& options) {
-  RequireExcitation(options);
-  const auto per_cycle = static_cast<double>(options.samples_per_cycle);
-  const auto steps = static_cast<std::size_t>(std::llround(options.cycles * per_cycle));
+  const auto steps = static_cast<std::size_t>(std::llround(samples));
   Excitation excitation;
   excitation.time.reserve(steps + 1);
   excitation.displacement.reserve(steps + 1);
@@ -47,8 +39,7 @@ Excitation MakeExcitation(const ExcitationOptions& options) {
   for (std::size_t i = 0; i <= steps; ++i) {
     excitation.time.push_back(static_cast<double>(i) / per_cycle / options.frequency);
     const double phase = static_cast<double>(i % options.samples_per_cycle) / per_cycle;
-    const double progress =
-        static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(steps, 1));
+    const double progress = static_cast<double>(i) / static_cast<double>(steps);
     const double envelope = options.waveform == Waveform::kGrowingSine
                                 ? options.amplitude * std::pow(options.growth, progress - 1)
                                 : options.amplitude;

@@ -2,12 +2,11 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstddef>
 #include <unsupported/Eigen/AutoDiff>
 #include <vector>
 
 #include "mindahl/models/backbone.h"
-#include "models/response_gradient.h"
+#include "models/normalized_response.h"
 
 namespace mindahl::models {
 

@@ -48,20 +48,6 @@ void Follow(const LoadedHistory& history, const LawUnderLoad<Real>& law, const S
   }
 }
 
-void RequireLawUnderLoad(const NormalizedLaw& law, const LoadedHistory& history,
-                         std::span<const double> t) {
-  Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
-  if (law.shape_exponent >= 1) {
-    ThrowInvalid("shape exponent [-]", law.shape_exponent,
-                 "must be < 1 under a varying load: slip is complete at a finite displacement");
-  }
-  if (law.spring_travel != 0) {
-    ThrowInvalid("travel of the spring in series [m]", law.spring_travel,
-                 "must be 0 under a varying load");
-  }
-  RequireSameSize("displacement", history.displacement.size(), "response", t.size());
-}
-
 /// Takes the nearest values that never fall, or never grow, from begin to end.
 void MakeMonotone(std::span<double> values, bool grows) {
   struct Pool {
@@ -129,7 +115,16 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
 void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
                                         double unloaded, std::span<double> t,
                                         const NormalizedGradient& gradient) {
-  RequireLawUnderLoad(law, history, t);
+  Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
+  if (law.shape_exponent >= 1) {
+    ThrowInvalid("shape exponent [-]", law.shape_exponent,
+                 "must be < 1 under a varying load: slip is complete at a finite displacement");
+  }
+  if (law.spring_travel != 0) {
+    ThrowInvalid("travel of the spring in series [m]", law.spring_travel,
+                 "must be 0 under a varying load");
+  }
+  RequireSameSize("displacement", history.displacement.size(), "response", t.size());
   const bool has_origin = history.before.empty();
   Tangent at_rest(has_origin ? unloaded : 0.0);
   if (IsEmpty(gradient)) {

@@ -13,26 +13,6 @@
 namespace mindahl::models {
 namespace {
 
-void RequireDisplacements(std::span<const double> displacement) {
-  if (displacement.empty()) {
-    throw InvalidArgument("the displacement history is empty: must have samples");
-  }
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (std::abs(displacement[i]) <= kLargestPathDisplacement) continue;
-    RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
-  }
-}
-
-void RequireAsymmetry(double asymmetry, Memory memory) {
-  if (!(std::abs(asymmetry) < 1)) {
-    ThrowInvalid("asymmetry [-]", asymmetry, "must be in (-1, 1)");
-  }
-  if (asymmetry != 0 && memory == Memory::kNone) {
-    ThrowInvalid("asymmetry [-]", asymmetry,
-                 "must be 0 of a law without memory: its two directions would differ in stiffness");
-  }
-}
-
 std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
 /// Returns the direction in which the record sets out.
@@ -87,15 +67,12 @@ class OpenBranches {
     if (memory_ == Memory::kNone) return;
     const std::size_t open = open_.size();
     open_.resize(StillOpen(open, OriginOf{path_, open_}, direction_, displacement, asymmetry_));
-    if (asymmetry_ != 0 && open > 1 && open_.size() == 1) TakeVirginCurve();
+    if (asymmetry_ == 0 || open == 1 || open_.size() > 1) return;
+    // The virgin curve of either direction is among the first two branches of the path.
+    open_.front() = path_.branches.front().direction == direction_ ? 0 : 1;
   }
 
-  [[nodiscard]] std::int32_t Present() const { return open_.back(); }
-
  private:
-  /// Selects the virgin curve of the present direction, of the first two branches of the path.
-  void TakeVirginCurve() { open_.front() = path_.branches.front().direction == direction_ ? 0 : 1; }
-
   struct OriginOf {
     const LoadingPath& path;
     const std::vector<std::int32_t>& open;
@@ -110,15 +87,6 @@ class OpenBranches {
   double asymmetry_;
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
-
-void AppendToRuns(std::vector<BranchRun>& runs, std::size_t begin, std::size_t end,
-                  std::int32_t branch) {
-  if (!runs.empty() && runs.back().branch == branch) {
-    runs.back().end = static_cast<std::uint32_t>(end);
-  } else {
-    runs.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), branch});
-  }
-}
 
 /// Opens what is open before the first sample.
 void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
@@ -171,9 +139,21 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
 
 void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn> turns,
                      Memory memory, const InitialContact& initial, LoadingPath& path) {
-  RequireDisplacements(displacement);
+  if (displacement.empty()) {
+    throw InvalidArgument("the displacement history is empty: must have samples");
+  }
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (std::abs(displacement[i]) <= kLargestPathDisplacement) continue;
+    RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
+  }
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
-  RequireAsymmetry(initial.asymmetry, memory);
+  if (!(std::abs(initial.asymmetry) < 1)) {
+    ThrowInvalid("asymmetry [-]", initial.asymmetry, "must be in (-1, 1)");
+  }
+  if (initial.asymmetry != 0 && memory == Memory::kNone) {
+    ThrowInvalid("asymmetry [-]", initial.asymmetry,
+                 "must be 0 of a law without memory: its two directions would differ in stiffness");
+  }
   path.asymmetry = initial.asymmetry;
   path.branches.clear();
   path.runs.clear();
@@ -188,7 +168,10 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn>
     while (i < end) {
       open.Advance(displacement[i]);
       const std::size_t next = i + 1 + open.SamplesAhead(displacement.subspan(i + 1, end - i - 1));
-      AppendToRuns(path.runs, i, next, open.Present());
+      if (path.runs.empty() || path.runs.back().branch != path.open.back()) {
+        path.runs.push_back({static_cast<std::uint32_t>(i), 0, path.open.back()});
+      }
+      path.runs.back().end = static_cast<std::uint32_t>(next);
       i = next;
     }
   };

@@ -4,24 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
-#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
-#include "models/response_gradient.h"
-#include "models/scaled_branches.h"
 
 namespace mindahl::models {
-
 namespace {
-
-/// Returns the law with Tc = 1: forces and stiffnesses are those over it.
-BranchLaw LawOf(const NormalizedLaw& law) {
-  return {
-      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
-}
 
 /// A general shape whose runs the kernel evaluates.
 struct KernelShape : backbone::GeneralShape<double> {};
@@ -38,6 +27,66 @@ void EvaluateRun(const ScaledBranch& branch, const KernelShape& shape, double /*
   EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
 }
 
+/// Returns the derivatives of t at `displacement`, and t itself.
+/// @param shape  that of the branch
+Gradient DifferentiateSample(const backbone::InSeries& shape, const ScaledBranch& branch,
+                             const BranchGradient& gradient, double displacement, double& force) {
+  const double e = displacement - branch.origin;
+  const auto series = shape.Differentiate(branch.Normalize(e));
+  const auto& phi = series.contact;
+  const double sign = std::copysign(1.0, e);
+  force = branch.force + branch.height * sign * phi.force;
+  // κ = h·k·c follows height and rate: Φ + κ∂Φ/∂κ = φ/(1+κφ'), Y∂Φ/∂Y + κ∂Φ/∂κ = yφ'/(1+κφ').
+  Gradient result =
+      gradient.force + sign * (gradient.height * (series.share * phi.force) +
+                               branch.height * (series.share * phi.elastic) * gradient.log_rate);
+  if (gradient.runs_both_ways) result[kAsymmetry] *= sign;
+  result[kShape] += sign * branch.height * (series.share * phi.shape_derivative);
+  result[kUnloaded] -=
+      gradient.origin_per_unloaded * branch.height * branch.rate * (series.share * phi.slope);
+  result[kSpring] += sign * branch.height * series.log_compliance;
+  return result;
+}
+
+/// Writes the derivatives of every branch of `scaled`, which ScaleBranches made.
+void DifferentiateBranches(const BranchScaling& scaling, const LoadingPath& path,
+                           const SprungShape& shape, const ScaledBranches& scaled,
+                           std::vector<BranchGradient>& gradients) {
+  gradients.clear();
+  gradients.reserve(path.branches.size());
+  for (const Branch& branch : path.branches) {
+    const BranchScale scale = scaling.ScaleOf(branch, scaled[gradients.size()].force);
+    BranchGradient& result = gradients.emplace_back();
+    if (branch.start == BranchStart::kReversal) {
+      const auto parent = static_cast<std::size_t>(branch.parent);
+      double force = 0.0;
+      result.force = DifferentiateSample(ShapeOn(shape, scaled[parent]), scaled[parent],
+                                         gradients[parent], branch.origin, force);
+    } else if (branch.start == BranchStart::kSteadyCentre) {
+      result.force[kAsymmetry] = 1.0;
+    } else if (branch.start == BranchStart::kSteadyExtreme) {
+      const auto [peak, per_log_spring_travel] = scaling.Peak(branch.amplitude);
+      result.force[kRate] = -branch.direction * peak.per_log_stiffness;
+      result.force[kShape] = -branch.direction * peak.per_shape;
+      result.force[kSpring] = -branch.direction * per_log_spring_travel;
+    }
+    result.log_rate[kRate] = 1.0;
+    if (scale.remaining <= 0) continue;
+    // The force at the origin changes the height and the rate of the branch.
+    const Gradient remaining = scale.remaining_per_force * branch.direction * result.force;
+    result.height += scale.span * remaining;
+    result.log_rate += (shape.shape_exponent - 1) * remaining / scale.remaining;
+    result.log_rate[kShape] += std::log(scale.remaining);
+    if (branch.start != BranchStart::kUnloaded) continue;
+    result.origin_per_unloaded = 1.0;
+    // The virgin curve is l·φ(κ|e|/l) with l = VirginLimit(): by a its height grows as l does, and
+    // its rate falls as 1/l does.
+    result.runs_both_ways = path.asymmetry == 0;
+    result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
+    result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);
+  }
+}
+
 /// Computes what the kernel does not: of a branch in series with a spring, or by an asymmetry.
 void DifferentiateRun(const backbone::InSeries& shape, const ScaledBranch& branch,
                       const BranchGradient& branch_gradient, double limit,
@@ -45,8 +94,7 @@ void DifferentiateRun(const backbone::InSeries& shape, const ScaledBranch& branc
                       const NormalizedGradient& gradient) {
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     double force = 0.0;
-    const Gradient g = Differentiation::DifferentiateSample(shape, branch, branch_gradient,
-                                                            displacement[i], force);
+    const Gradient g = DifferentiateSample(shape, branch, branch_gradient, displacement[i], force);
     t[i] = std::clamp(force, -limit, limit);
     for (std::size_t j = 0; j < gradient.size(); ++j) {
       if (!gradient[j].empty()) gradient[j][i] = g[static_cast<Eigen::Index>(j)];
@@ -54,12 +102,42 @@ void DifferentiateRun(const backbone::InSeries& shape, const ScaledBranch& branc
   }
 }
 
+// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):
+//   y(φ) = (1 − u^β)/β,  u = 1 − φ the fraction of the branch's height that is left, β = 1 − α.
+
+/// Returns y; no form subtracts what cancels.
+/// @param share      φ in [0, 1)
+/// @param remaining  u = 1 − φ > 0, with digits of its own next to slip
+double ReducedDisplacement(double shape_exponent, double share, double remaining) {
+  if (shape_exponent == 0) return share;
+  if (shape_exponent == 1.0 / 3) {
+    const double root = std::cbrt(remaining);
+    return 1.5 * share * (1 + root) / (1 + root + root * root);
+  }
+  const double log_remaining = share < 0.5 ? std::log1p(-share) : std::log(remaining);
+  const double exponent = (1 - shape_exponent) * log_remaining;
+  return exponent == 0 ? -log_remaining : -log_remaining * (std::expm1(exponent) / exponent);
+}
+
+/// Returns ∂y/∂α = ln²u·(1 − e^z + z·e^z)/z², z = β·ln u; the last factor by its series,
+/// Σ (k+1)·zᵏ/(k+2)!, where its terms cancel.
+/// @param log_remaining  ln u
+double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) {
+  const double z = (1 - shape_exponent) * log_remaining;
+  constexpr double kCancelling = 0.05;  // beyond it the ninth term is above ε/8 of the first
+  const double square = log_remaining * log_remaining;
+  if (!(std::abs(z) < kCancelling)) return square * ((z * std::exp(z) - std::expm1(z)) / (z * z));
+  double sum = z / 403200;
+  for (const double divisor : {45360, 5760, 840, 144, 30, 8, 3}) sum = z * (1 / divisor + sum);
+  return square * (0.5 + sum);
+}
+
 }  // namespace
 
 void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLaw& law,
                                   const LoadingPath& path, std::span<const double> displacement,
                                   std::span<double> t, const NormalizedGradient& gradient) {
-  const BranchLaw branch_law = LawOf(law);
+  const BranchLaw branch_law = {law.rate, law.shape_exponent, 1.0};
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
   if (IsEmpty(gradient)) {
@@ -73,7 +151,7 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   const double limit = path.limit();
   const SprungShape shape{law.shape_exponent, law.spring_travel};
   ScaleBranches(scaling, path, shape, branches_);
-  Differentiation(scaling, shape).Differentiate(path, branches_, gradients_);
+  DifferentiateBranches(scaling, path, shape, branches_, gradients_);
   const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
   if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);
   for (const BranchRun& run : path.runs) {

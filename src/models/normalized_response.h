@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -8,7 +9,6 @@
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
@@ -20,8 +20,24 @@ struct NormalizedLaw {
   double spring_travel = 0.0;         ///< c = Tc/k_r [m] of a spring in series; 0 without one
 };
 
-/// Derivatives of t = T/Tc by each ResponseParameter, a column each; an empty one is not wanted.
+/// Numbers the parameters on which t = T/Tc depends: ln κ, α, δ₀, ln c, and the asymmetry a of slip
+/// forces Tc(1 ± a).
+enum ResponseParameter : int { kRate, kShape, kUnloaded, kSpring, kAsymmetry, kParameters };
+using Gradient = Eigen::Vector<double, kParameters>;
+
+/// Derivatives of t by each ResponseParameter, a column each; an empty one is not wanted.
 using NormalizedGradient = std::array<std::span<double>, kParameters>;
+
+/// Holds the derivatives of a branch.
+struct BranchGradient {
+  Gradient force = Gradient::Zero();
+  Gradient height = Gradient::Zero();
+  Gradient log_rate = Gradient::Zero();
+  double origin_per_unloaded = 0.0;  // 1 on the virgin curve, which moves with δ₀
+  /// True of a virgin curve that is run both ways, on which a larger limit on one side is a smaller
+  /// one on the other: ∂height/∂a has the sign of e there.
+  bool runs_both_ways = false;
+};
 
 /// True if no derivative is wanted.
 template <std::size_t kColumns>

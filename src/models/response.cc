@@ -16,7 +16,7 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
                    const SeriesSpring& rig) {
   Validate(law);
   RequireSizes(path, displacement, "force", force);
-  const double travel = IsRigid(rig) ? 0.0 : SpringTravel(law, rig);
+  const double travel = SpringTravel(law, rig);
   ScaledBranches branches;
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
     EvaluatePath(model, law, travel, shape, path, displacement, force, branches);

@@ -106,8 +106,9 @@ class BranchScaling {
   [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
                                    double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force);
-    return {branch.origin, origin_force, scale.span * scale.remaining * limit,
-            RateOf(scale) / limit};
+    double rate = scale.remaining <= 0 ? 0.0 : rate_ / scale.span;
+    if (rate != 0 && scale.remaining != 1) rate *= std::pow(scale.remaining, shape_exponent_ - 1);
+    return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate / limit};
   }
 
   /// Force over Tc at the branch's origin, `force_of_parent` giving that of the parent there.
@@ -115,28 +116,16 @@ class BranchScaling {
   template <typename ForceOfParent>
   [[nodiscard]] double OriginForce(const Branch& branch, ForceOfParent&& force_of_parent,
                                    double asymmetry = 0.0) const {
-    switch (branch.start) {
-      case BranchStart::kUnloaded:
-        return 0.0;
-      case BranchStart::kSteadyCentre:
-        return asymmetry;
-      case BranchStart::kSteadyExtreme:
-        return -branch.direction * Peak(branch.amplitude).peak.force;
-      case BranchStart::kReversal:
-        break;
+    if (branch.start == BranchStart::kReversal) {
+      return force_of_parent(static_cast<std::size_t>(branch.parent));
     }
-    return force_of_parent(static_cast<std::size_t>(branch.parent));
+    if (branch.start == BranchStart::kSteadyExtreme) {
+      return -branch.direction * Peak(branch.amplitude).peak.force;
+    }
+    return branch.start == BranchStart::kSteadyCentre ? asymmetry : 0.0;
   }
 
  private:
-  /// Returns k = (σ/Tc)·v^{α−1}/span.
-  [[nodiscard]] double RateOf(const BranchScale& scale) const {
-    if (scale.remaining <= 0) return 0.0;
-    const double virgin_rate = rate_ / scale.span;
-    if (scale.remaining == 1.0) return virgin_rate;
-    return virgin_rate * std::pow(scale.remaining, shape_exponent_ - 1);
-  }
-
   const FrictionModel& model_;
   double rate_;
   double shape_exponent_;
@@ -198,44 +187,6 @@ void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double sprin
     EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
                 displacement.subspan(run.begin, count), force.subspan(run.begin, count));
   }
-}
-
-/// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):
-///   y(φ) = (1 − u^β)/β,  u = 1 − φ the fraction of the branch's height that is left, β = 1 − α.
-
-/// No form subtracts what cancels.
-/// @param share      φ in [0, 1)
-/// @param remaining  u = 1 − φ > 0, with digits of its own next to slip
-inline double ReducedDisplacement(double shape_exponent, double share, double remaining) {
-  if (shape_exponent == 0) return share;
-  if (shape_exponent == 1.0 / 3) {
-    const double root = std::cbrt(remaining);
-    return 1.5 * share * (1 + root) / (1 + root + root * root);
-  }
-  const double log_remaining = share < 0.5 ? std::log1p(-share) : std::log(remaining);
-  const double exponent = (1 - shape_exponent) * log_remaining;
-  return exponent == 0 ? -log_remaining : -log_remaining * (std::expm1(exponent) / exponent);
-}
-
-/// Returns ∂y/∂α = ln²u·(1 − e^z + z·e^z)/z², z = β·ln u; the last factor by its series,
-/// Σ (k+1)·zᵏ/(k+2)!, where its terms cancel.
-/// @param log_remaining  ln u
-inline double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) {
-  const double z = (1 - shape_exponent) * log_remaining;
-  constexpr double kCancelling = 0.05;  // beyond it the ninth term is above ε/8 of the first
-  double factor = 0.0;
-  if (std::abs(z) < kCancelling) {
-    factor =
-        1.0 / 2 +
-        z * (1.0 / 3 +
-             z * (1.0 / 8 +
-                  z * (1.0 / 30 +
-                       z * (1.0 / 144 + z * (1.0 / 840 + z * (1.0 / 5760 + z * (1.0 / 45360 +
-                                                                                z / 403200.0)))))));
-  } else {
-    factor = (z * std::exp(z) - std::expm1(z)) / (z * z);
-  }
-  return log_remaining * log_remaining * factor;
 }
 
 inline bool IsRigid(const SeriesSpring& rig) {

@@ -1,8 +1,6 @@
 #include "mindahl/models/steady_loop.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
@@ -11,19 +9,21 @@
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
-
 namespace {
 
-/// Returns t* at the amplitude.
-double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
-  return BranchScaling(model, law).Peak(amplitude).peak.force;
+/// Makes a law in long double: a power of α multiplies the error of its logarithm by α.
+BranchLaw Made(long double stiffness, double shape_exponent, long double slip_force) {
+  const BranchLaw law = {static_cast<double>(stiffness), shape_exponent,
+                         static_cast<double>(slip_force)};
+  Validate(law);
+  return law;
 }
 
 }  // namespace
 
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   RequireLawAndAmplitude(law, amplitude);
-  return law.slip_force * Peak(model, law, amplitude);
+  return law.slip_force * BranchScaling(model, law).Peak(amplitude).peak.force;
 }
 
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude) {
@@ -31,14 +31,13 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
   const auto y = backbone::Normalize(law.tangential_stiffness, amplitude, law.slip_force);
   const long double unit =
       static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
-  const double peak = Peak(model, law, amplitude);
+  const double peak = BranchScaling(model, law).Peak(amplitude).peak.force;
   const BranchScale scale = model.scale(-peak, /*virgin=*/false);
   // A branch runs from −t* to t* = −t* + h·φ(2ky), so W = 2[∫ branch − 2y·t*] is a Masing loop's
   // energy in other units, (h/4k)·[8∫₀^{2ky} φ − 4·(2ky)·φ(2ky)]: one form, free of cancellation.
   const long double height = static_cast<long double>(scale.span) * scale.remaining;
-  const long double rate = std::pow(static_cast<long double>(scale.remaining),
-                                    static_cast<long double>(law.shape_exponent) - 1) /
-                           scale.span;
+  const long double rate =
+      std::pow(static_cast<long double>(scale.remaining), law.shape_exponent - 1.0L) / scale.span;
   const long double stretch = 2 * rate;  // 1 for a Masing law
   return Representable(
       "energy per cycle [J]",
@@ -56,33 +55,18 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
   return BranchScaling(model, law, spring_travel).ContactAmplitude(rate * amplitude) / rate;
 }
 
-namespace {
-
-/// Makes a law in long double: a power of α multiplies the error of its logarithm by α.
-BranchLaw Made(long double stiffness, double shape_exponent, long double slip_force) {
-  const BranchLaw law{.tangential_stiffness = static_cast<double>(stiffness),
-                      .shape_exponent = shape_exponent,
-                      .slip_force = static_cast<double>(slip_force)};
-  Validate(law);
-  return law;
-}
-
-}  // namespace
-
 BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude) {
   RequireLawAndAmplitude(masing, amplitude);
   // 1 − T*/(2Tc) = (1 + u)/2 has the digits that T* → Tc would lose.
   const long double remaining = BackboneRemaining(masing, amplitude);
-  return Made(masing.tangential_stiffness *
-                  std::pow((1 + remaining) / 2, static_cast<long double>(masing.shape_exponent)),
+  return Made(masing.tangential_stiffness * std::pow((1 + remaining) / 2, masing.shape_exponent),
               masing.shape_exponent, masing.slip_force * (1 + remaining));
 }
 
 BranchLaw MasingEquivalent(const BranchLaw& dahl, double amplitude) {
   RequireLawAndAmplitude(dahl, amplitude);
   const long double peak = SteadyPeakForce(*FindFrictionModel("dahl"), dahl, amplitude);
-  return Made(dahl.tangential_stiffness * std::pow(1 + peak / dahl.slip_force,
-                                                   static_cast<long double>(dahl.shape_exponent)),
+  return Made(dahl.tangential_stiffness * std::pow(1 + peak / dahl.slip_force, dahl.shape_exponent),
               dahl.shape_exponent, (dahl.slip_force + peak) / 2);
 }
 

@@ -35,8 +35,7 @@ class ContactState {
  public:
   /// Makes the virgin contact: T = 0 at δ₀, nothing to remember.
   /// @param model  any of FrictionModels(), or a model of the user's that outlives the state and
-  /// its
-  ///   copies
+  ///   its copies
   /// @param law    its α is used as it stands, also for a model that prescribes one
   /// @throws InvalidArgument for an invalid law, option or spring (as EvaluateForce)
   ContactState(const FrictionModel& model, const BranchLaw& law,
@@ -143,8 +142,7 @@ class ContactState {
   const FrictionModel* model_;
   BranchLaw law_;
   double unloaded_displacement_;
-  bool sprung_;
-  double spring_travel_ = 0.0;  // Tc/k_r [m]
+  double spring_travel_ = 0.0;  // Tc/k_r [m]; 0 of a rigid rig
   Course course_;
   Shape shape_;  // on the present branch
   double displacement_ = 0.0;
