@@ -17,32 +17,22 @@ namespace mindahl::contact {
 
 namespace {
 
-void RequireStandardError(std::string_view quantity, double standard_error) {
-  RequireNonNegative(fmt::format("standard uncertainty of the {}", quantity), standard_error);
-}
-
-void RequireKnown(std::string_view quantity, const std::optional<UncertainValue>& known) {
+/// @param require  throws unless a value may be one of the quantity
+void RequireKnown(std::string_view quantity, const std::optional<UncertainValue>& known,
+                  void (*require)(std::string_view, double) = RequirePositive) {
   if (!known) return;
-  RequirePositive(quantity, known->value);
-  RequireStandardError(quantity, known->standard_error);
+  require(quantity, known->value);
+  const std::string uncertainty = fmt::format("standard uncertainty of the {}", quantity);
+  RequireNonNegative(uncertainty, known->standard_error);
+  if (std::isinf(known->value) && known->standard_error > 0) {
+    ThrowInvalid(uncertainty, known->standard_error, "must be 0 for a plane, which is exact");
+  }
 }
 
 void RequireBody(const KnownBody& body, int number) {
   RequireKnown(fmt::format("youngs_modulus_{} [Pa]", number), body.youngs_modulus);
-  if (body.poisson_ratio) {
-    const std::string quantity = fmt::format("poisson_{} [-]", number);
-    RequirePoissonRatio(quantity, body.poisson_ratio->value);
-    RequireStandardError(quantity, body.poisson_ratio->standard_error);
-  }
-  if (body.radius) {
-    const std::string quantity = fmt::format("radius_{} [m]", number);
-    RequireSurfaceRadius(quantity, body.radius->value);
-    RequireStandardError(quantity, body.radius->standard_error);
-    if (std::isinf(body.radius->value) && body.radius->standard_error > 0.0) {
-      ThrowInvalid(fmt::format("standard uncertainty of the {}", quantity),
-                   body.radius->standard_error, "must be 0 for a plane, which is exact");
-    }
-  }
+  RequireKnown(fmt::format("poisson_{} [-]", number), body.poisson_ratio, RequirePoissonRatio);
+  RequireKnown(fmt::format("radius_{} [m]", number), body.radius, RequireSurfaceRadius);
 }
 
 bool AreElastic(const KnownContact& known) {
@@ -60,22 +50,20 @@ bool KnowsHertz(const KnownContact& known) {
 // Quantities of the known ones; the caller has found that they are known.
 
 Body BodyOf(const KnownBody& known) {
-  return {.youngs_modulus = known.youngs_modulus.value(),
-          .poisson_ratio = known.poisson_ratio.value()};
+  return {.youngs_modulus = *known.youngs_modulus, .poisson_ratio = *known.poisson_ratio};
 }
 double EffectiveModulusOf(const KnownContact& known) {
   return EffectiveModulus(BodyOf(known.body_1), BodyOf(known.body_2));
 }
 double ComplianceOf(const KnownContact& known) {
-  return known.tangential_compliance
-             ? known.tangential_compliance->value
-             : TangentialCompliance(BodyOf(known.body_1), BodyOf(known.body_2));
+  if (known.tangential_compliance) return *known.tangential_compliance;
+  return TangentialCompliance(BodyOf(known.body_1), BodyOf(known.body_2));
 }
 double EquivalentRadiusOf(const KnownContact& known) {
-  return EquivalentRadius(known.body_1.radius.value(), known.body_2.radius.value());
+  return EquivalentRadius(*known.body_1.radius, *known.body_2.radius);
 }
 double HertzRadiusOf(const KnownContact& known) {
-  return HertzContactRadius(known.normal_load.value(), EquivalentRadiusOf(known),
+  return HertzContactRadius(*known.normal_load, EquivalentRadiusOf(known),
                             EffectiveModulusOf(known));
 }
 
@@ -182,7 +170,7 @@ PredictedContact PredictContact(const KnownContact& known) {
     return by_radius ? at.contact_radius->value : HertzRadiusOf(at);
   };
   const auto slip_force_of = [](const KnownContact& at) {
-    return GrossSlipForce(at.friction_coefficient->value, at.normal_load->value);
+    return GrossSlipForce(*at.friction_coefficient, *at.normal_load);
   };
   PredictedContact predicted;
   if (by_bodies) {
@@ -192,7 +180,7 @@ PredictedContact PredictContact(const KnownContact& known) {
   predicted.tangential_compliance = Propagated(known, ComplianceOf);
   predicted.contact_radius = Propagated(known, radius_of);
   predicted.maximum_pressure = Propagated(known, [&](const KnownContact& at) {
-    return HertzMaximumPressure(at.normal_load->value, radius_of(at));
+    return HertzMaximumPressure(*at.normal_load, radius_of(at));
   });
   predicted.tangential_stiffness = Propagated(known, [&](const KnownContact& at) {
     return MindlinTangentialStiffness(radius_of(at), ComplianceOf(at));

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <variant>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -41,32 +42,22 @@ constexpr std::array kLammps = {ParameterRow{"kt", "k", "N/m", "of tangential li
                                 ParameterRow{"slip_force", "Tc", "N", "Coulomb's limit"},
                                 ParameterRow{"mu", "mu", "-", "friction, Tc/N"}};
 
-using Lines = std::string_view;
-constexpr std::array<Lines, 1> kMasingLines = {
-    "--model mindlin-dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"};
-constexpr std::array<Lines, 1> kDahlLines = {
-    "--model dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"};
-constexpr std::array<Lines, 5> kLuGreLines = {"sigma0 = {k}", "sigma1 = 0", "sigma2 = 0",
-                                              "Fc = {Tc}", "Fs = {Tc}"};
-constexpr std::array<Lines, 2> kBoucWenLines = {
-    "# OpenSees, force in N and displacement in m: tag alpha ko n gamma beta Ao deltaA deltaNu "
-    "deltaEta",
-    "uniaxialMaterial BoucWen 1 0.0 {k} {n} {gamma} {beta} 1.0 0.0 0.0 0.0"};
-constexpr std::array<Lines, 1> kElementLines = {
-    "# OpenSees, force in N and displacement in m: tag, stiffness, displacement at slip"};
-constexpr std::array<Lines, 2> kLammpsLines = {
-    "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
-    "tangential linear_history {k} 0.0 {mu}"};
-
 constexpr std::array kTargets = {
-    TargetRow{"masing", "Masing's law (mindlin-dahl)", Form::kMasing, kMasing, kMasingLines},
-    TargetRow{"dahl", "Dahl's own law", Form::kDahl, kDahl, kDahlLines},
+    TargetRow{"masing", "Masing's law (mindlin-dahl)", Form::kMasing, kMasing,
+              "--model mindlin-dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"},
+    TargetRow{"dahl", "Dahl's own law", Form::kDahl, kDahl,
+              "--model dahl --sigma {k} --alpha {alpha} --slip-force {Tc}"},
     TargetRow{"lugre", "LuGre without rate: Dahl's law of α = 1", Form::kExponential, kLuGre,
-              kLuGreLines},
-    TargetRow{"bouc-wen", "Bouc's and Wen's law", Form::kBoucWen, kBoucWen, kBoucWenLines},
-    TargetRow{"iwan", "Jenkins elements in parallel", Form::kElements, kElements, kElementLines},
+              "sigma0 = {k}\nsigma1 = 0\nsigma2 = 0\nFc = {Tc}\nFs = {Tc}"},
+    TargetRow{"bouc-wen", "Bouc's and Wen's law", Form::kBoucWen, kBoucWen,
+              "# OpenSees, force in N and displacement in m: tag alpha ko n gamma beta Ao deltaA "
+              "deltaNu deltaEta\n"
+              "uniaxialMaterial BoucWen 1 0.0 {k} {n} {gamma} {beta} 1.0 0.0 0.0 0.0"},
+    TargetRow{"iwan", "Jenkins elements in parallel", Form::kElements, kElements,
+              "# OpenSees, force in N and displacement in m: tag, stiffness, displacement at slip"},
     TargetRow{"lammps", "a tangential spring with Coulomb's limit", Form::kSpring, kLammps,
-              kLammpsLines},
+              "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff\n"
+              "tangential linear_history {k} 0.0 {mu}"},
 };
 
 SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& options) {
@@ -190,8 +181,9 @@ std::vector<std::string> LinesOf(const SteadyLaw& law, const TargetRow& target,
   for (const auto& [key, value] : values) {
     store.push_back(fmt::arg(std::string(key).c_str(), value));
   }
-  std::vector<std::string> lines;
-  for (const std::string_view line : target.lines) lines.push_back(fmt::vformat(line, store));
+  const std::string text = fmt::vformat(target.lines, store);
+  const std::vector<std::string_view> parts = PartsOf(text, '\n');
+  std::vector<std::string> lines(parts.begin(), parts.end());
   if (const auto* elements = std::get_if<IwanElements>(&law)) {
     std::string tags;
     for (std::size_t j = 0; j < elements->size(); ++j) {

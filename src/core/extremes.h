@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 
 namespace mindahl {
@@ -10,6 +11,10 @@ struct Extremes {
 };
 
 /// Returns the least and greatest of values that are no NaN, at least one.
-[[nodiscard]] Extremes ExtremesOf(std::span<const double> values);
+[[nodiscard]] inline Extremes ExtremesOf(std::span<const double> values) {
+  // Eigen compares several values at once, which compilers may not of a loop.
+  const Eigen::Map<const Eigen::ArrayXd> array(values.data(), std::ssize(values));
+  return {array.minCoeff(), array.maxCoeff()};
+}
 
 }  // namespace mindahl

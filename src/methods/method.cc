@@ -8,7 +8,6 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -60,7 +59,8 @@ Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const R
   };
 }
 
-/// Implements a shape as backbone.h defines it.
+/// A shape as backbone.h defines it: φ between equal intervals of r = y/(1+y), which takes every y
+/// to [0, 1), linearly.
 class TableShape {
  public:
   TableShape(double shape_exponent, std::size_t intervals) : node_(intervals + 1) {
@@ -174,12 +174,11 @@ Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
   return [&model, law, resolution](const Drive& drive, std::span<double> force) {
     const LoadingPath path = PathOf(model, drive);
     BranchFollower follower(model, law, path, resolution);
-    const double limit = path.limit();
     for (const models::BranchRun& run : path.runs) {
       for (std::size_t i = run.begin; i < run.end; ++i) {
         const double t =
             follower.MoveTo(static_cast<std::size_t>(run.branch), drive.displacement[i]);
-        force[i] = law.slip_force * std::clamp(t, -limit, limit);
+        force[i] = law.slip_force * std::clamp(t, -1.0, 1.0);
       }
     }
     return CostOf(path, force.size(), 0.0) + follower.cost();
@@ -195,14 +194,13 @@ Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resoluti
   };
 }
 
-/// Tabulates φ between equal intervals of r = y/(1+y), which takes every y to [0, 1), linearly.
 Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
                        const Resolution& resolution) {
-  const auto shape = std::make_shared<const TableShape>(law.shape_exponent, resolution.steps);
+  const TableShape shape(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
     const LoadingPath path = PathOf(model, drive);
     models::ScaledBranches branches;
-    models::EvaluatePath(model, law, 0.0, *shape, path, drive.displacement, force, branches);
+    models::EvaluatePath(model, law, 0.0, shape, path, drive.displacement, force, branches);
     return CostOf(path, force.size(), kLookUp);
   };
 }

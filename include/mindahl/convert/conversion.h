@@ -36,8 +36,7 @@ struct TargetRow {
   std::string_view title;
   Form form;
   std::span<const ParameterRow> parameters;
-  /// Lines that it reads, with keys of values in braces.
-  std::span<const std::string_view> lines;
+  std::string_view lines;  ///< lines that it reads, with keys of values in braces
 };
 
 /// Returns all targets, in the order of the documentation.
