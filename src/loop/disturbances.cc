@@ -87,8 +87,7 @@ const Eigen::VectorXd& ParabolaWeights(std::size_t reach) {
 
 double ParabolaAt(std::span<const double> values, std::size_t at, std::size_t reach) {
   const Eigen::VectorXd& weights = ParabolaWeights(reach);
-  return weights.dot(
-      Eigen::Map<const Eigen::VectorXd>(values.data() + (at - reach), weights.size()));
+  return weights.dot(Eigen::VectorXd::Map(values.data() + (at - reach), weights.size()));
 }
 
 /// Returns half of the widest window about a sample in which parabolas agree.
@@ -125,8 +124,7 @@ double EstimateDisplacementNoise(std::span<const double> displacement) {
   anew.reserve(displacement.size());
   std::ranges::unique_copy(displacement, std::back_inserter(anew));
   if (anew.size() < 4) return 0.0;
-  const double noise = NoiseByDifferences(anew, 3);
-  return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
+  return std::max(NoiseByDifferences(anew, 3), EncoderStep(displacement) / std::sqrt(12.0));
 }
 
 std::vector<std::size_t> SmoothingReaches(std::span<const double> displacement, double noise) {

@@ -115,19 +115,6 @@ std::optional<std::array<double, kEdges - 1>> MeansBetween(
   return integrals;
 }
 
-/// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest;
-/// empty where two strokes between turns of the force have no displacement in common.
-template <std::size_t kParts>
-std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double centre,
-                                                  double reach) {
-  if (!(reach > 0)) return std::nullopt;
-  std::array<double, kParts + 1> edges{};
-  for (std::size_t j = 0; j <= kParts; ++j) {
-    edges[j] = centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
-  }
-  return MeansBetween(stroke.displacement, stroke.force, edges);
-}
-
 /// The two strokes of a cycle in order of time, with the middle of what both pass.
 struct Cycle {
   Stroke first;
@@ -155,16 +142,34 @@ Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
   return cycle;
 }
 
+/// Means of the forces of the rising and the falling stroke over equal parts of the middle fraction
+/// of what both pass, from the lowest; empty where two strokes between turns of the force have no
+/// displacement in common.
+template <std::size_t kParts>
+std::optional<std::array<std::array<double, kParts>, 2>> PartsOf(const Cycle& cycle,
+                                                                 double fraction) {
+  const double reach = fraction * cycle.reach;
+  if (!(reach > 0)) return std::nullopt;
+  std::array<double, kParts + 1> edges{};
+  for (std::size_t j = 0; j <= kParts; ++j) {
+    edges[j] =
+        cycle.centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
+  }
+  const auto up = MeansBetween(cycle.rising().displacement, cycle.rising().force, edges);
+  const auto down = MeansBetween(cycle.falling().displacement, cycle.falling().force, edges);
+  if (!up || !down) return std::nullopt;
+  return {{*up, *down}};
+}
+
 void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
-  constexpr std::size_t kParts = 5;
   constexpr double kMiddle = 1.0 / 3;  // of the stroke
-  auto up = PartsOf<kParts>(cycle.rising(), cycle.centre, kMiddle * cycle.reach);
-  auto down = PartsOf<kParts>(cycle.falling(), cycle.centre, kMiddle * cycle.reach);
-  if (!up || !down) return;
-  std::array<double, kParts> gaps{};
-  std::ranges::transform(*up, *down, gaps.begin(), std::minus<>());
+  auto parts = PartsOf<5>(cycle, kMiddle);
+  if (!parts) return;
+  auto& [up, down] = *parts;
+  auto gaps = up;
+  std::ranges::transform(up, down, gaps.begin(), std::minus<>());
   facts.half_gap = Median(gaps) / 2;
-  facts.centre_force = (Median(*up) + Median(*down)) / 2;
+  facts.centre_force = (Median(up) + Median(down)) / 2;
 }
 
 void MeasureWidth(const Cycle& cycle, CycleFacts& facts) {
@@ -211,21 +216,22 @@ double StandardDeviation(Column values) {
   return std::sqrt(boost::math::statistics::sample_variance(values.begin(), values.end()));
 }
 
-std::optional<double> Asymmetry(std::span<const Cycle> cycles, double peak_force) {
+std::optional<double> Asymmetry(std::span<const Cycle> cycles, const LoopFacts& facts) {
   constexpr std::size_t kParts = 10;
   constexpr double kReach = 0.95;  // of what both strokes pass: their corners differ in a sample
   std::array<double, kParts> sums{};
   std::size_t count = 0;
-  for (const Cycle& cycle : cycles) {
-    const auto up = PartsOf<kParts>(cycle.rising(), cycle.centre, kReach * cycle.reach);
-    const auto down = PartsOf<kParts>(cycle.falling(), cycle.centre, kReach * cycle.reach);
-    if (!up || !down) continue;
-    for (std::size_t j = 0; j < kParts; ++j) sums[j] += (*up)[j] + (*down)[kParts - 1 - j];
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    if (!facts.cycles[k].steady) continue;
+    const auto parts = PartsOf<kParts>(cycles[k], kReach);
+    if (!parts) continue;
+    const auto& [up, down] = *parts;
+    for (std::size_t j = 0; j < kParts; ++j) sums[j] += up[j] + down[kParts - 1 - j];
     ++count;
   }
-  if (count == 0 || !(peak_force > 0)) return std::nullopt;
+  if (count == 0 || !(facts.peak_force > 0)) return std::nullopt;
   for (double& sum : sums) sum /= 2 * static_cast<double>(count);
-  return StandardDeviation(sums) / peak_force;
+  return StandardDeviation(sums) / facts.peak_force;
 }
 
 /// Measures what a record shows whether it closes a cycle or not.
@@ -324,24 +330,15 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     const auto of_cycle = std::span(points).subspan(k, 3);
     cycles.push_back(CycleOf(record, of_cycle));
-    facts.cycles.push_back(MeasureCycle(record, of_cycle, cycles.back()));
+    CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, of_cycle, cycles.back()));
+    const auto samples =
+        counts.empty() ? counts : counts.subspan(points[k], points[k + 2] - points[k]);
+    cycle.steady = 2 * std::ranges::count(samples, 1) > std::ssize(samples);
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
-  std::vector<bool> chosen(cycles.size());
-  for (std::size_t k = 0; k < cycles.size() && !counts.empty(); ++k) {
-    const auto samples = counts.subspan(points[2 * k], points[2 * k + 2] - points[2 * k]);
-    chosen[k] = 2 * std::ranges::count(samples, 1) > std::ssize(samples);
-  }
-  if (std::ranges::find(chosen, true) == chosen.end()) chosen.assign(cycles.size(), true);
-  double widest = 0.0;
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    if (chosen[k]) widest = std::max(widest, facts.cycles[k].amplitude);
-  }
-  std::vector<Cycle> steady;
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    facts.cycles[k].steady = chosen[k] && facts.cycles[k].amplitude >= kSteady * widest;
-    if (facts.cycles[k].steady) steady.push_back(cycles[k]);
+  if (std::ranges::none_of(facts.cycles, &CycleFacts::steady)) {
+    for (CycleFacts& cycle : facts.cycles) cycle.steady = true;
   }
   // Returns the values of the steady cycles that have the fact.
   const auto values_of = [&](auto fact) {
@@ -352,12 +349,17 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
     }
     return values;
   };
-  facts.steady_cycles = steady.size();
-  facts.amplitude = Mean(values_of(&CycleFacts::amplitude));
+  const double widest = std::ranges::max(values_of(&CycleFacts::amplitude));
+  for (CycleFacts& cycle : facts.cycles) {
+    cycle.steady = cycle.steady && cycle.amplitude >= kSteady * widest;
+  }
+  const std::vector<double> amplitudes = values_of(&CycleFacts::amplitude);
+  facts.steady_cycles = amplitudes.size();
+  facts.amplitude = Mean(amplitudes);
   facts.peak_force = Median(values_of(&CycleFacts::peak_force));
   facts.energy_per_cycle = Mean(values_of(&CycleFacts::energy));
   facts.energy_ratio = Mean(values_of(&CycleFacts::energy_ratio));
-  facts.asymmetry = Asymmetry(steady, facts.peak_force);
+  facts.asymmetry = Asymmetry(cycles, facts);
   const std::vector<double> sliding = values_of(&CycleFacts::sliding_amplitude);
   if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
   const std::vector<double> gaps = values_of(&CycleFacts::half_gap);

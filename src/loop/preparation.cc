@@ -15,31 +15,20 @@
 namespace mindahl::loop {
 namespace {
 
-/// Returns how far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n)
-/// standard deviations to either side, and must not make a reversal.
-double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& options) {
-  if (options.excitation == Channel::kForce) return 0.0;
-  const double deviations = std::sqrt(2 * std::log(static_cast<double>(record.size())));
-  return 2 * deviations * options.displacement_noise.value_or(0.0);
-}
-
-/// Standard deviation [m] of a displacement's noise where the record has to be treated as noisy.
-double DisplacementNoise(const PreparedRecord& prepared, const PreparationOptions& options) {
-  if (options.excitation == Channel::kForce) return 0.0;
-  if (options.displacement_noise) return *options.displacement_noise;
+void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
   const std::span<const double> displacement = prepared.readings().displacement;
+  prepared.encoder_step = EncoderStep(displacement);
+  if (options.excitation == Channel::kForce) return;
   const auto [lowest, highest] = ExtremesOf(displacement);
   // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
   constexpr double kCoarse = 2e-4;
   const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
-  return prepared.gate.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
-}
-
-void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
-  prepared.encoder_step = EncoderStep(prepared.readings().displacement);
-  prepared.displacement_noise = DisplacementNoise(prepared, options);
+  if (options.displacement_noise) {
+    prepared.displacement_noise = *options.displacement_noise;
+  } else if (prepared.gate.gate > 0 || is_coarse) {
+    prepared.displacement_noise = EstimateDisplacementNoise(displacement);
+  }
   if (!(prepared.displacement_noise > 0)) return;
-  const std::span<const double> displacement = prepared.readings().displacement;
   prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
   prepared.smoothed = Smoothed(displacement, prepared.smoothing);
   prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
@@ -56,12 +45,15 @@ void LeaveOutGlitches(PreparedRecord& prepared) {
 }
 
 void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
-  const RecordView readings = prepared.readings();
+  const bool is_force = options.excitation == Channel::kForce;
   const std::span<const double> excitation =
-      options.excitation == Channel::kForce ? readings.force : readings.displacement;
+      is_force ? prepared.force() : prepared.readings().displacement;
+  // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
+  const double deviations = std::sqrt(2 * std::log(static_cast<double>(prepared.size())));
+  const double noise = is_force ? 0.0 : options.displacement_noise.value_or(0.0);
   if (!options.reversal_gate) prepared.gate = ChooseReversalGate(excitation);
-  prepared.gate.gate = options.reversal_gate.value_or(
-      std::max(prepared.gate.gate, ReachOfKnownNoise(prepared.record, options)));
+  prepared.gate.gate =
+      options.reversal_gate.value_or(std::max(prepared.gate.gate, 2 * deviations * noise));
   prepared.reversals = FindReversals(excitation, prepared.gate.gate);
 }
 

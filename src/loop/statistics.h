@@ -31,11 +31,10 @@ inline double NoiseByDifferences(std::span<const double> values, std::size_t ord
   std::vector<double> differences(values.begin(), values.end());
   double variance = 1.0;  // of a difference over the noise's
   for (std::size_t k = 1; k <= order; ++k) {
-    for (std::size_t i = 0; i + k < values.size(); ++i)
-      differences[i] = differences[i + 1] - differences[i];
+    std::adjacent_difference(differences.begin(), differences.end(), differences.begin());
     variance *= 2.0 * static_cast<double>(2 * k - 1) / static_cast<double>(k);
   }
-  differences.resize(values.size() - order);
+  differences.erase(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(order));
   for (double& difference : differences) difference = std::abs(difference);
   return kDeviationOverMedian * Median(differences) / std::sqrt(variance);
 }

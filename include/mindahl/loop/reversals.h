@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,8 +20,11 @@ class ReversalFinder {
   /// @returns the index of the reversal that this sample makes known
   std::optional<std::size_t> Add(double displacement) {
     const std::size_t i = count_++;
-    if (sense_ == 0) {
-      SetOut(i, displacement);
+    if (sense_ == 0) {  // until the displacement has left the gate it goes neither way
+      high_ = std::max(high_, displacement);
+      low_ = std::min(low_, displacement);
+      if (high_ - displacement > gate_) Go(-1.0, i, displacement);
+      if (displacement - low_ > gate_) Go(1.0, i, displacement);
       return std::nullopt;
     }
     const double along = sense_ * displacement;
@@ -36,17 +40,6 @@ class ReversalFinder {
   }
 
  private:
-  /// Until the displacement has left the gate it goes neither way.
-  void SetOut(std::size_t i, double displacement) {
-    high_ = i == 0 ? displacement : std::max(high_, displacement);
-    low_ = i == 0 ? displacement : std::min(low_, displacement);
-    if (high_ - displacement > gate_) {
-      Go(-1.0, i, displacement);
-    } else if (displacement - low_ > gate_) {
-      Go(1.0, i, displacement);
-    }
-  }
-
   void Go(double sense, std::size_t i, double displacement) {
     sense_ = sense;
     extreme_ = sense * displacement;
@@ -55,8 +48,8 @@ class ReversalFinder {
 
   double gate_;
   std::size_t count_ = 0;
-  double high_ = 0.0;  // before the displacement goes either way
-  double low_ = 0.0;
+  double high_ = -std::numeric_limits<double>::infinity();  // before it goes either way
+  double low_ = std::numeric_limits<double>::infinity();
   double sense_ = 0.0;    // of the motion, ±1; 0 before it is known
   double extreme_ = 0.0;  // the outermost displacement of the stroke, times the direction
   std::size_t place_ = 0;
