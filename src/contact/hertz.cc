@@ -3,18 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string_view>
 
 #include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {
 namespace {
-
-constexpr std::string_view kNormalLoadName = "normal load [N]";
-constexpr std::string_view kContactRadiusName = "contact radius [m]";
-constexpr std::string_view kEquivalentRadius = "equivalent radius [m]";
-constexpr std::string_view kEffectiveModulus = "effective modulus [Pa]";
 
 void RequireElastic(const Body& body) {
   RequirePositive("Young's modulus [Pa]", body.youngs_modulus);
@@ -64,26 +58,26 @@ double EquivalentRadius(double radius_1, double radius_2) {
 }
 
 double HertzContactRadius(double normal_load, double equivalent_radius, double effective_modulus) {
-  RequirePositive(kNormalLoadName, normal_load);
-  RequirePositive(kEquivalentRadius, equivalent_radius);
-  RequirePositive(kEffectiveModulus, effective_modulus);
+  RequirePositive("normal load [N]", normal_load);
+  RequirePositive("equivalent radius [m]", equivalent_radius);
+  RequirePositive("effective modulus [Pa]", effective_modulus);
   const long double load = normal_load;
-  return InRange(kContactRadiusName,
+  return InRange("contact radius [m]",
                  std::cbrt(0.75L * load * equivalent_radius / effective_modulus));
 }
 
 double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus) {
-  RequirePositive(kNormalLoadName, normal_load);
-  RequirePositive(kContactRadiusName, contact_radius);
-  RequirePositive(kEffectiveModulus, effective_modulus);
+  RequirePositive("normal load [N]", normal_load);
+  RequirePositive("contact radius [m]", contact_radius);
+  RequirePositive("effective modulus [Pa]", effective_modulus);
   const long double radius = contact_radius;
-  return InRange(kEquivalentRadius,
+  return InRange("equivalent radius [m]",
                  4 * effective_modulus * (radius * radius * radius) / (3.0L * normal_load));
 }
 
 double HertzMaximumPressure(double normal_load, double contact_radius) {
-  RequirePositive(kNormalLoadName, normal_load);
-  RequirePositive(kContactRadiusName, contact_radius);
+  RequirePositive("normal load [N]", normal_load);
+  RequirePositive("contact radius [m]", contact_radius);
   const long double radius = contact_radius;
   return InRange("maximum pressure [Pa]",
                  1.5L * normal_load / (std::numbers::pi_v<long double> * radius * radius));

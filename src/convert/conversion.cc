@@ -158,10 +158,8 @@ std::map<std::string_view, double> ValuesOf(const SteadyLaw& law,
     // γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
     values["beta"] = values["gamma"] = 0.5 * std::pow(stiffness / slip_force, bouc_wen->exponent);
   } else if (const auto* elements = std::get_if<IwanElements>(&law)) {
-    for (std::size_t j = 0; j < elements->size(); ++j) {
-      stiffness += elements->stiffness[j];
-      slip_force += elements->slip_force[j];
-    }
+    stiffness = std::accumulate(elements->stiffness.begin(), elements->stiffness.end(), 0.0);
+    slip_force = std::accumulate(elements->slip_force.begin(), elements->slip_force.end(), 0.0);
   } else {
     const models::BranchLaw& of_model = std::get<ModelLaw>(law).law;
     stiffness = of_model.tangential_stiffness;

@@ -61,13 +61,11 @@ long double MiddlingWork(const SplitDisplacement& y, long double shape_exponent)
 }  // namespace
 
 SplitDisplacement Normalize(double stiffness, double x, double slip_force) {
-  const long double factor = stiffness;
   const long double reach = std::abs(x);
-  const long double divisor = slip_force;
-  const long double product = factor * reach;
-  const long double product_low = std::fma(factor, reach, -product);
-  const long double quotient = product / divisor;
-  return {quotient, (std::fma(-quotient, divisor, product) + product_low) / divisor};
+  const long double product = stiffness * reach;
+  const long double product_low = std::fma(stiffness, reach, -product);
+  const long double quotient = product / slip_force;
+  return {quotient, (std::fma(-quotient, slip_force, product) + product_low) / slip_force};
 }
 
 Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_exponent) {

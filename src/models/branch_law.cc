@@ -33,13 +33,11 @@ BranchLaw AtLoad(const BranchLaw& law, double load_ratio, double load_exponent) 
 }
 
 double GrossSlipDisplacement(const BranchLaw& law) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const long double beta = 1 - static_cast<long double>(law.shape_exponent);
-  if (beta <= 0) return kInfinity;
+  using Limits = std::numeric_limits<double>;
+  const long double beta = 1.0L - law.shape_exponent;
+  if (beta <= 0) return Limits::infinity();
   const long double displacement = law.slip_force / (law.tangential_stiffness * beta);
-  return displacement <= static_cast<long double>(std::numeric_limits<double>::max())
-             ? static_cast<double>(displacement)
-             : kInfinity;
+  return displacement <= Limits::max() ? static_cast<double>(displacement) : Limits::infinity();
 }
 
 namespace {

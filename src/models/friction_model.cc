@@ -50,22 +50,20 @@ double LogSinhRatio(double x) {
 /// free of cancellation; t* = tanh y for α = 1, t* = 1 from y = 2^{β−1}/β on for α < 1.
 struct DahlLoop {
   double shape_exponent;
-
-  [[nodiscard]] double Beta() const { return 1 - shape_exponent; }
+  double beta = 1 - shape_exponent;
 
   /// Returns log(y(θ)/y).
   [[nodiscard]] double LogRatio(double theta, double y) const {
-    return std::log(theta / y) + LogSinhRatio(Beta() * theta) - Beta() * LogCosh(theta);
+    return std::log(theta / y) + LogSinhRatio(beta * theta) - beta * LogCosh(theta);
   }
   /// Returns d log y/dθ.
   [[nodiscard]] double LogSlope(double theta) const {
-    return std::exp(LogCosh(shape_exponent * theta) - LogCosh(theta) -
-                    LogSinhRatio(Beta() * theta)) /
+    return std::exp(LogCosh(shape_exponent * theta) - LogCosh(theta) - LogSinhRatio(beta * theta)) /
            theta;
   }
   /// Returns ∂ log y/∂β.
   [[nodiscard]] double LogPerBeta(double theta) const {
-    const double x = Beta() * theta;
+    const double x = beta * theta;
     // coth x − 1/x, by its series where these cancel: 2x⁹/93555 < ε/8 of x/3.
     const double langevin =
         std::abs(x) < 0.05 ? x / 3 * (1 - x * x / 15 * (1 - x * x * (2.0 / 21) * (1 - x * x / 10)))
@@ -105,25 +103,13 @@ SteadyPeak DahlPeak(double y, double shape_exponent) {
 }
 
 constexpr std::array kModels = {
-    FrictionModel{.name = "mindlin-dahl",
-                  .title = "Masing law with free shape exponent (Full-Dahl)",
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "mindlin",
-                  .title = "Mindlin's sphere contact",
-                  .shape_exponent = 1.0 / 3.0,
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "jenkins",
-                  .title = "Jenkins element: spring and Coulomb slider",
-                  .shape_exponent = 0.0,
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "dahl",
-                  .title = "Dahl's own law",
-                  .memory = Memory::kNone,
-                  .scale = DahlScale,
-                  .steady_peak = DahlPeak},
+    FrictionModel{"mindlin-dahl", "Masing law with free shape exponent (Full-Dahl)",
+                  Memory::kReturnPoint, std::nullopt, MasingScale, MasingPeak},
+    FrictionModel{"mindlin", "Mindlin's sphere contact", Memory::kReturnPoint, 1.0 / 3, MasingScale,
+                  MasingPeak},
+    FrictionModel{"jenkins", "Jenkins element: spring and Coulomb slider", Memory::kReturnPoint,
+                  0.0, MasingScale, MasingPeak},
+    FrictionModel{"dahl", "Dahl's own law", Memory::kNone, std::nullopt, DahlScale, DahlPeak},
 };
 
 }  // namespace

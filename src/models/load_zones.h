@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/AutoDiff>
 #include <vector>
@@ -52,14 +53,6 @@ using Tangent = Eigen::AutoDiffScalar<Eigen::Vector3d>;
 /// Returns the number without its derivatives, which alone decides between cases.
 inline double ValueOf(double x) { return x; }
 inline double ValueOf(const Tangent& x) { return x.value(); }
-
-/// Returns x within ±limit; beyond it the limit, with the limit's derivatives.
-template <typename Real>
-Real Within(const Real& x, const Real& limit) {
-  if (ValueOf(x) > ValueOf(limit)) return limit;
-  if (ValueOf(x) < -ValueOf(limit)) return -limit;
-  return x;
-}
 
 /// Fraction of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
 template <typename Shape>
@@ -162,7 +155,7 @@ void MoveTo(const LoadRim<Real>& to, double displacement, const Share& share,
   } else if (widening > 0) {
     force = WidenLoadZones(to, displacement, contact);
   }
-  contact.force = Within(force, to.slip_force);
+  contact.force = std::clamp(force, Real(-to.slip_force), to.slip_force);
   contact.rim = to;
   contact.displacement = displacement;
 }

@@ -15,15 +15,6 @@ namespace {
 
 std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
-/// Returns the direction in which the record sets out.
-std::int8_t FirstDirection(std::span<const double> displacement, std::span<const Turn> turns) {
-  const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
-  const double next = turns.size() > 1    ? turns[1].displacement
-                      : turns.size() == 1 ? displacement.back()
-                                          : displacement.front();
-  return SignOf(first_extreme - next);
-}
-
 /// The branches that are open at the present displacement, oldest first. The only state is the
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
@@ -92,7 +83,11 @@ class OpenBranches {
 void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
                          std::span<const Turn> turns, Memory memory,
                          const InitialContact& initial) {
-  const std::int8_t direction = FirstDirection(displacement, turns);
+  const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
+  const double next = turns.size() > 1    ? turns[1].displacement
+                      : turns.size() == 1 ? displacement.back()
+                                          : displacement.front();
+  const std::int8_t direction = SignOf(first_extreme - next);  // in which the record sets out
   if (initial.state == InitialState::kVirgin) {
     const double origin = initial.unloaded_displacement;
     const double first_step = displacement.front() - origin;
@@ -158,8 +153,7 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn>
   path.branches.clear();
   path.runs.clear();
   path.open.clear();
-  constexpr std::size_t kInitialBranches = 3;
-  path.branches.reserve(turns.size() + kInitialBranches);
+  path.branches.reserve(turns.size() + 3);  // and those that are open before the first sample
   const bool is_virgin = initial.state == InitialState::kVirgin;
   OpenBranches open(path, memory, is_virgin ? initial.asymmetry : 0.0);
   OpenInitialBranches(open, displacement, turns, memory, initial);
