@@ -27,19 +27,18 @@ FitOptions OfSteadyCycles(FitOptions options) {
   return options;
 }
 
-/// Measures the facts, with the ends as turning points where the gate has not found them.
-loop::LoopFacts FactsOf(const Cycle& cycle, const FitResult& result) {
+/// Takes over the facts, with the ends as turning points where the gate has not found them.
+void FillFacts(const Cycle& cycle, const FitResult& result, CycleFit& fit) {
+  constexpr double kReturns = 0.05;  // of the width
   const loop::Record& record = cycle.record;
   const identification::RecordFit& fitted = result.records.front();
-  if (fitted.facts.cycles.size() == cycle.cycles) return fitted.facts;
-  std::vector<std::size_t> turns = {0};
-  turns.insert(turns.end(), fitted.reversals.begin(), fitted.reversals.end());
-  turns.push_back(record.size() - 1);
-  return loop::MeasureFacts(record, turns, result.force_sense);
-}
-
-void FillFacts(const loop::Record& record, const loop::LoopFacts& facts, CycleFit& fit) {
-  constexpr double kReturns = 0.05;  // of the width
+  loop::LoopFacts facts = fitted.facts;
+  if (facts.cycles.size() != cycle.cycles) {
+    std::vector<std::size_t> turns = {0};
+    turns.insert(turns.end(), fitted.reversals.begin(), fitted.reversals.end());
+    turns.push_back(record.size() - 1);
+    facts = loop::MeasureFacts(record, turns, result.force_sense);
+  }
   const double way = record.displacement.back() - record.displacement.front();
   if (!(std::abs(way) <= kReturns * 2 * facts.amplitude)) fit.flags.emplace_back("not_closed");
   if (!facts.closed || !(facts.energy_per_cycle > 0)) {
@@ -51,7 +50,7 @@ void FillFacts(const loop::Record& record, const loop::LoopFacts& facts, CycleFi
   fit["sliding_amplitude"] = facts.sliding_amplitude;
   fit["half_gap"] = facts.half_gap;
   double energy = 0.0;
-  for (const loop::CycleFacts& cycle : facts.cycles) energy += cycle.energy;
+  for (const loop::CycleFacts& each : facts.cycles) energy += each.energy;
   fit["energy"] = energy / static_cast<double>(facts.cycles.size());
   fit["energy_ratio"] = facts.energy_ratio;
   // µ_W = W/(4·N·sliding amplitude)
@@ -148,7 +147,7 @@ CycleFit CycleFitter::Fit(const Cycle& read) {
   const identification::RecordFit& fitted = result->records.front();
   if (is_repaired || !fitted.glitches.empty()) fit.flags.emplace_back("glitches");
   if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
-  FillFacts(record, FactsOf(cycle, *result), fit);
+  FillFacts(cycle, *result, fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
   for (const char* name : {"sigma", "alpha", "slip_force", "force_offset"}) {
     FillParameter(*result, name, fit);

@@ -29,26 +29,23 @@ std::size_t Tracker::NextFile() {
 }
 
 void Tracker::Take(std::vector<Cycle>& cycles) {
+  constexpr std::size_t kMostPoints = 400;
   for (Cycle& cycle : cycles) {
-    Log(cycle);
+    // The first cycle from 1, 10, 100, … on is kept.
+    std::size_t next = 1;
+    for (std::size_t k = 0; k < log_.size(); ++k) next *= 10;
+    if (cycle.number >= next) {
+      const std::size_t stride = cycle.record.size() / kMostPoints + 1;
+      Cycle& kept = log_.emplace_back();
+      kept.number = cycle.number;
+      for (std::size_t i = 0; i < cycle.record.size(); i += stride) {
+        kept.record.displacement.push_back(cycle.record.displacement[i]);
+        kept.record.force.push_back(cycle.record.force[i]);
+      }
+    }
     if (fits_++ < options_.skipped) continue;
     batch_.push_back(std::move(cycle));
     if (batch_.size() == kBatch) Begin();
-  }
-}
-
-/// Keeps the first cycle from 1, 10, 100, … on.
-void Tracker::Log(const Cycle& cycle) {
-  constexpr std::size_t kMostPoints = 400;
-  std::size_t next = 1;
-  for (std::size_t k = 0; k < log_.size(); ++k) next *= 10;
-  if (cycle.number < next) return;
-  const std::size_t stride = cycle.record.size() / kMostPoints + 1;
-  Cycle& kept = log_.emplace_back();
-  kept.number = cycle.number;
-  for (std::size_t i = 0; i < cycle.record.size(); i += stride) {
-    kept.record.displacement.push_back(cycle.record.displacement[i]);
-    kept.record.force.push_back(cycle.record.force[i]);
   }
 }
 

@@ -195,7 +195,13 @@ std::vector<std::string> LinesOf(const SteadyLaw& law, const TargetRow& target,
   return lines;
 }
 
-void RequireOptions(const TargetRow& target, const ConversionOptions& options) {
+}  // namespace
+
+std::span<const TargetRow> Targets() { return kTargets; }
+
+Conversion Convert(const ModelLaw& contact, const TargetRow& target,
+                   const ConversionOptions& options) {
+  models::Validate(contact.law);
   RequirePositive("amplitude [m]", options.amplitude);
   if (!(options.tolerance > 0 && options.tolerance < 1)) {
     ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1)");
@@ -207,16 +213,6 @@ void RequireOptions(const TargetRow& target, const ConversionOptions& options) {
   if (options.elements != ConversionOptions().elements && target.form != Form::kElements) {
     throw InputError("--elements has no effect unless --to is iwan: leave it out");
   }
-}
-
-}  // namespace
-
-std::span<const TargetRow> Targets() { return kTargets; }
-
-Conversion Convert(const ModelLaw& contact, const TargetRow& target,
-                   const ConversionOptions& options) {
-  models::Validate(contact.law);
-  RequireOptions(target, options);
   Conversion conversion;
   conversion.law = LawOf(contact, target.form, options);
   conversion.at_amplitude = CompareLoops(conversion.law, contact, options.amplitude);

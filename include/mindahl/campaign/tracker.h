@@ -60,7 +60,6 @@ class Tracker {
 
  private:
   void Take(std::vector<Cycle>& cycles);
-  void Log(const Cycle& cycle);
   void Begin();
   void Deliver();
 

@@ -216,7 +216,11 @@ class InSeries {
   InSeries(double shape_exponent, double compliance)
       : shape_exponent_(shape_exponent), beta_(1 - shape_exponent), compliance_(compliance) {
     if (compliance <= 1) return;  // φ' <= 1: the spring is the stiffer everywhere
-    const double balance = Balance();
+    // ℓ where κφ' = κ·e^{−αℓ} = 1; kFarthest where u underflows before.
+    constexpr double kFarthest = -2.0 * std::numeric_limits<double>::min_exponent;
+    const double log_compliance = std::log(compliance);
+    const double balance =
+        log_compliance < kFarthest * shape_exponent ? log_compliance / shape_exponent : kFarthest;
     balance_force_ = ForceAt(balance);
     balance_displacement_ = DisplacementAt(balance);
     balance_total_ = balance_displacement_ + compliance * balance_force_;
@@ -277,14 +281,6 @@ class InSeries {
     return compliance_ == 0 ? total : DisplacementAt(LogShare(total));
   }
   [[nodiscard]] static double ForceAt(double log_share) { return -std::expm1(-log_share); }
-
-  /// Returns ℓ where κφ' = κ·e^{−αℓ} = 1, of κ > 1; kFarthest where u underflows before.
-  [[nodiscard]] double Balance() const {
-    constexpr double kFarthest = -2.0 * std::numeric_limits<double>::min_exponent;
-    const double log_compliance = std::log(compliance_);
-    return log_compliance < kFarthest * shape_exponent_ ? log_compliance / shape_exponent_
-                                                        : kFarthest;
-  }
 
   /// Returns ℓ from a fraction of what is left to go, which rounding may have used up.
   static double FromShare(double share) {
