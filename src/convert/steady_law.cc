@@ -36,52 +36,47 @@ double Solve(const Function& function, double low, double high) {
   return std::midpoint(from, to);
 }
 
-/// Bouc's and Wen's law over y = kx/Tc, t = T/Tc, which has no closed form.
-class BoucWenBranch {
- public:
-  explicit BoucWenBranch(const BoucWenLaw& law) : law_(law) {}
+/// A rising branch of Bouc's and Wen's law over y = kx/Tc, t = T/Tc, which has no closed form.
+struct BoucWenBranch {
+  static constexpr double kTolerance = 1e-12;
 
-  /// Force t and work ∫t dy since the branch's start.
-  struct State {
-    double force;
-    double work = 0.0;
-    double y = 0.0;
-  };
+  double exponent;
+  double force;       // t
+  double work = 0.0;  // ∫t dy since the branch's start
+  double y = 0.0;
 
-  /// Follows a rising branch up to y.
-  void Rise(State& state, double y) const {
+  /// Follows it up to a y.
+  void RiseTo(double end) {
     namespace odeint = boost::numeric::odeint;
     using Values = std::array<double, 2>;
     auto stepper =
         odeint::make_controlled<odeint::runge_kutta_dopri5<Values>>(kTolerance, kTolerance);
-    Values values = {state.force, state.work};
+    Values values = {force, work};
     const auto rate = [&](const Values& at, Values& derivative, double /*y*/) {
-      derivative = {1 - std::pow(std::clamp(at[0], 0.0, 1.0), law_.exponent), at[0]};
+      derivative = {1 - std::pow(std::clamp(at[0], 0.0, 1.0), exponent), at[0]};
     };
-    double h = y - state.y;
-    while (state.y < y && values[0] < 1 - kTolerance) {
-      h = std::min(h, y - state.y);
-      if (state.y + h <= state.y) break;
-      stepper.try_step(rate, values, state.y, h);
+    double h = end - y;
+    while (y < end && values[0] < 1 - kTolerance) {
+      h = std::min(h, end - y);
+      if (y + h <= y) break;
+      stepper.try_step(rate, values, y, h);
     }
     // From there on it slides.
-    state = {values[0], values[1] + values[0] * std::max(y - state.y, 0.0), y};
+    force = values[0];
+    work = values[1] + values[0] * std::max(end - y, 0.0);
+    y = end;
   }
-
-  /// Returns the peak of the steady loop between ±y: a branch from −t* ends at t*.
-  [[nodiscard]] double Peak(double y) const {
-    const auto excess = [&](double peak) {
-      State state{-peak};
-      Rise(state, 2 * y);
-      return state.force - peak;
-    };
-    return excess(1.0) > -2 * kTolerance ? 1.0 : Solve(excess, 0.0, 1.0);
-  }
-
- private:
-  static constexpr double kTolerance = 1e-12;
-  BoucWenLaw law_;
 };
+
+/// Returns the peak of the steady loop between ±y: a branch from −t* ends at t*.
+double PeakOf(double exponent, double y) {
+  const auto excess = [&](double peak) {
+    BoucWenBranch branch{exponent, -peak};
+    branch.RiseTo(2 * y);
+    return branch.force - peak;
+  };
+  return excess(1.0) > -2 * BoucWenBranch::kTolerance ? 1.0 : Solve(excess, 0.0, 1.0);
+}
 
 SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
   const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
@@ -100,16 +95,15 @@ SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
 }
 
 SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
-  const BoucWenBranch branch(law);
   const double per_travel = law.stiffness / law.slip_force;
-  const BoucWenBranch::State start{-branch.Peak(per_travel * amplitude)};
-  BoucWenBranch::State end = start;
-  branch.Rise(end, 2 * per_travel * amplitude);
+  const BoucWenBranch start{law.exponent, -PeakOf(law.exponent, per_travel * amplitude)};
+  BoucWenBranch end = start;
+  end.RiseTo(2 * per_travel * amplitude);
   return {-law.slip_force * start.force,
           law.slip_force / per_travel * 2 * end.work,
           {},
           [=, at = start](double distance) mutable {
-            branch.Rise(at, per_travel * distance);
+            at.RiseTo(per_travel * distance);
             return law.slip_force * at.force;
           }};
 }

@@ -105,13 +105,8 @@ struct RunConstants {
   double origin;
   double rate;
   double beta;
-  double per_beta;  // 0 for β = 0, where it is not used
+  double per_beta = beta == 0 ? 0.0 : 1 / beta;  // for β = 0 it is not used
 };
-
-MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch& branch, double shape_exponent) {
-  const double beta = 1 - shape_exponent;
-  return {branch.origin, branch.rate, beta, beta == 0 ? 0.0 : 1 / beta};
-}
 
 struct Sample {
   double sign;
@@ -176,7 +171,7 @@ MINDAHL_INLINE void ForEach(std::size_t count, AtSample&& at) {
 
 MINDAHL_FOR_INSTRUCTION_SETS void EvaluateBlock(const ScaledBranch& branch, double shape_exponent,
                                                 double limit, std::size_t count, Block& block) {
-  const RunConstants run = ConstantsOf(branch, shape_exponent);
+  const RunConstants run = {branch.origin, branch.rate, 1 - shape_exponent};
   const double start = branch.force;
   const double height = branch.height;
   ForEach(count, [&](std::size_t i) MINDAHL_INLINE_LAMBDA {
@@ -189,7 +184,7 @@ MINDAHL_FOR_INSTRUCTION_SETS void DifferentiateBlock(const ScaledBranch& branch,
                                                      const BranchGradient& start,
                                                      double shape_exponent, double limit,
                                                      std::size_t count, Block& block) {
-  const RunConstants run = ConstantsOf(branch, shape_exponent);
+  const RunConstants run = {branch.origin, branch.rate, 1 - shape_exponent};
   const double force_start = branch.force;
   const double height = branch.height;
   // data() calls no inline function of Eigen: clang does not emit these for target clones.

@@ -19,23 +19,50 @@ std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  /// @param asymmetry  of a virgin contact; 0 of another
-  OpenBranches(LoadingPath& path, Memory memory, double asymmetry)
-      : path_(path), open_(path.open), memory_(memory), asymmetry_(asymmetry) {}
+  OpenBranches(LoadingPath& path, Memory memory, const InitialContact& initial)
+      : path_(path),
+        memory_(memory),
+        asymmetry_(initial.state == InitialState::kVirgin ? initial.asymmetry : 0.0) {}
 
-  void Open(Branch branch) {
-    branch.parent = open_.empty() ? -1 : open_.back();
-    direction_ = branch.direction;
-    path_.branches.push_back(branch);
-    open_.push_back(static_cast<std::int32_t>(path_.branches.size() - 1));
-  }
-
-  /// Opens the virgin curve, in either direction where the two differ.
-  void OpenVirgin(const Branch& branch) {
-    Open(branch);
-    if (asymmetry_ == 0) return;
-    Branch& back = path_.branches.emplace_back(path_.branches.back());
-    back.direction = static_cast<std::int8_t>(-branch.direction);
+  /// Opens what is open before the first sample.
+  void OpenInitial(std::span<const double> displacement, std::span<const Turn> turns,
+                   const InitialContact& initial) {
+    const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
+    const double next = turns.size() > 1    ? turns[1].displacement
+                        : turns.size() == 1 ? displacement.back()
+                                            : displacement.front();
+    const std::int8_t direction = SignOf(first_extreme - next);  // in which the record sets out
+    if (initial.state == InitialState::kVirgin) {
+      const double origin = initial.unloaded_displacement;
+      const double first_step = displacement.front() - origin;
+      const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
+      Open({.origin = origin, .start = BranchStart::kUnloaded, .direction = first_direction});
+      if (asymmetry_ != 0) {  // the virgin curve of the other direction
+        Branch& back = path_.branches.emplace_back(path_.branches.back());
+        back.direction = static_cast<std::int8_t>(-first_direction);
+      }
+      if (first_direction != direction) Reverse(displacement.front());
+      return;
+    }
+    auto [lowest, highest] = ExtremesOf(displacement);
+    for (const Turn& turn : turns) {
+      lowest = std::min(lowest, turn.displacement);
+      highest = std::max(highest, turn.displacement);
+    }
+    const double amplitude = (highest - lowest) / 2;
+    const double near_extreme = initial.turns_at_first ? displacement.front()
+                                : direction > 0        ? lowest
+                                                       : highest;
+    if (memory_ == Memory::kNone) {
+      Open({near_extreme, amplitude, -1, BranchStart::kSteadyExtreme, direction});
+      return;
+    }
+    // One turn of the loop from the unloaded contact: a Masing law is steady after it.
+    Open({.origin = lowest + amplitude,
+          .start = BranchStart::kSteadyCentre,
+          .direction = direction});
+    Reverse(direction > 0 ? highest : lowest);
+    Reverse(near_extreme);
   }
 
   /// Starts the branch back from `extreme` on the present one.
@@ -45,8 +72,8 @@ class OpenBranches {
 
   /// Returns how many of the samples ahead the present branch has before it closes.
   [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
-    if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
-    const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_}, asymmetry_);
+    if (memory_ == Memory::kNone || path_.open.size() < 2) return displacement.size();
+    const double closing = ClosingDisplacement(path_.open.size(), OriginOf{path_}, asymmetry_);
     const double direction = direction_;
     std::size_t ahead = 0;
     while (ahead < displacement.size() && direction * (displacement[ahead] - closing) < 0) ++ahead;
@@ -56,66 +83,33 @@ class OpenBranches {
   /// Moves on to `displacement` in the present direction; closes what it passes.
   void Advance(double displacement) {
     if (memory_ == Memory::kNone) return;
-    const std::size_t open = open_.size();
-    open_.resize(StillOpen(open, OriginOf{path_, open_}, direction_, displacement, asymmetry_));
-    if (asymmetry_ == 0 || open == 1 || open_.size() > 1) return;
+    const std::size_t open = path_.open.size();
+    path_.open.resize(StillOpen(open, OriginOf{path_}, direction_, displacement, asymmetry_));
+    if (asymmetry_ == 0 || open == 1 || path_.open.size() > 1) return;
     // The virgin curve of either direction is among the first two branches of the path.
-    open_.front() = path_.branches.front().direction == direction_ ? 0 : 1;
+    path_.open.front() = path_.branches.front().direction == direction_ ? 0 : 1;
   }
 
  private:
   struct OriginOf {
     const LoadingPath& path;
-    const std::vector<std::int32_t>& open;
     double operator()(std::size_t i) const {
-      return path.branches[static_cast<std::size_t>(open[i])].origin;
+      return path.branches[static_cast<std::size_t>(path.open[i])].origin;
     }
   };
 
+  void Open(Branch branch) {
+    branch.parent = path_.open.empty() ? -1 : path_.open.back();
+    direction_ = branch.direction;
+    path_.branches.push_back(branch);
+    path_.open.push_back(static_cast<std::int32_t>(path_.branches.size() - 1));
+  }
+
   LoadingPath& path_;
-  std::vector<std::int32_t>& open_;
   Memory memory_;
-  double asymmetry_;
+  double asymmetry_;           // of a virgin contact; 0 of another
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
-
-/// Opens what is open before the first sample.
-void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
-                         std::span<const Turn> turns, Memory memory,
-                         const InitialContact& initial) {
-  const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
-  const double next = turns.size() > 1    ? turns[1].displacement
-                      : turns.size() == 1 ? displacement.back()
-                                          : displacement.front();
-  const std::int8_t direction = SignOf(first_extreme - next);  // in which the record sets out
-  if (initial.state == InitialState::kVirgin) {
-    const double origin = initial.unloaded_displacement;
-    const double first_step = displacement.front() - origin;
-    const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
-    open.OpenVirgin(
-        {.origin = origin, .start = BranchStart::kUnloaded, .direction = first_direction});
-    if (first_direction != direction) open.Reverse(displacement.front());
-    return;
-  }
-  auto [lowest, highest] = ExtremesOf(displacement);
-  for (const Turn& turn : turns) {
-    lowest = std::min(lowest, turn.displacement);
-    highest = std::max(highest, turn.displacement);
-  }
-  const double amplitude = (highest - lowest) / 2;
-  const double near_extreme = initial.turns_at_first ? displacement.front()
-                              : direction > 0        ? lowest
-                                                     : highest;
-  if (memory == Memory::kNone) {
-    open.Open({near_extreme, amplitude, -1, BranchStart::kSteadyExtreme, direction});
-    return;
-  }
-  // One turn of the loop from the unloaded contact: a Masing law is steady after it.
-  open.Open(
-      {.origin = lowest + amplitude, .start = BranchStart::kSteadyCentre, .direction = direction});
-  open.Reverse(direction > 0 ? highest : lowest);
-  open.Reverse(near_extreme);
-}
 
 }  // namespace
 
@@ -154,9 +148,8 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn>
   path.runs.clear();
   path.open.clear();
   path.branches.reserve(turns.size() + 3);  // and those that are open before the first sample
-  const bool is_virgin = initial.state == InitialState::kVirgin;
-  OpenBranches open(path, memory, is_virgin ? initial.asymmetry : 0.0);
-  OpenInitialBranches(open, displacement, turns, memory, initial);
+  OpenBranches open(path, memory, initial);
+  open.OpenInitial(displacement, turns, initial);
   std::size_t i = 0;
   const auto run_to = [&](std::size_t end) {
     while (i < end) {

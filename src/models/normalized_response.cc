@@ -210,7 +210,10 @@ bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLa
                                       std::span<double> d, const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
   const bool with_gradient = !IsEmpty(gradient);
-  const double zero = UnloadedAt(path);
+  // Where a virgin contact begins, or the middle of a steady loop.
+  const models::Branch& first = path.branches.front();
+  const bool at_extreme = first.start == BranchStart::kSteadyExtreme;
+  const double zero = at_extreme ? first.origin + first.direction * first.amplitude : first.origin;
   branches_.clear();
   branches_.reserve(path.branches.size());
   for (const models::Branch& from : path.branches) {

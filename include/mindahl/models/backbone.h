@@ -123,10 +123,10 @@ struct GeneralShape {
   [[nodiscard]] Real Force(Real y) const { return Force(Reduce(y)); }
 
   /// Returns φ'; 0 at and beyond gross slip.
-  [[nodiscard]] Real Slope(const Reduced<Real>& at) const {
+  [[nodiscard]] Real Slope(Real y) const {
+    const Reduced<Real> at = Reduce(y);
     return at.z > 0 ? At(at).slope : Real(0);
   }
-  [[nodiscard]] Real Slope(Real y) const { return Slope(Reduce(y)); }
 
  private:
   static constexpr Real kNearSlip = Real(0.5);  // of w
@@ -173,19 +173,17 @@ struct ForceAndDerivatives {
 /// ∂φ/∂α = −u·(y/z + log u)/β = −u·y²·(w/(1−w) + log1p(−w))/w²: the second form, by its series,
 /// where the first cancels.
 template <typename Real>
-ForceAndDerivatives<Real> Differentiate(const Reduced<Real>& at, Real shape_exponent) {
+ForceAndDerivatives<Real> Differentiate(Real y, Real shape_exponent) {
+  const GeneralShape<Real> shape{shape_exponent};
+  const Reduced<Real> at = shape.Reduce(y);
   if (at.z <= 0) return {.force = 1};
-  const Shares<Real> share = GeneralShape<Real>{shape_exponent}.At(at);
+  const Shares<Real> share = shape.At(at);
   const Real elastic = at.y * share.slope;
   const Real shape_derivative =
       std::abs(at.w) < SmallSeries<Real>::kSmall
           ? share.remaining * at.y * at.y * SmallSeries<Real>(at.w).curvature
           : (elastic + share.remaining * share.log_remaining) / (1 - shape_exponent);
   return {share.force, share.slope, elastic, -shape_derivative};
-}
-template <typename Real>
-ForceAndDerivatives<Real> Differentiate(Real y, Real shape_exponent) {
-  return Differentiate(GeneralShape<Real>{shape_exponent}.Reduce(y), shape_exponent);
 }
 
 /// Φ (below) with its derivatives, which are the contact's at y over 1 + κφ'.
@@ -222,7 +220,7 @@ class InSeries {
     const double balance =
         log_compliance < kFarthest * shape_exponent ? log_compliance / shape_exponent : kFarthest;
     balance_force_ = ForceAt(balance);
-    balance_displacement_ = DisplacementAt(balance);
+    balance_displacement_ = DecayOf(beta_, balance).sum;
     balance_total_ = balance_displacement_ + compliance * balance_force_;
   }
 
@@ -272,13 +270,10 @@ class InSeries {
     const double change = -std::expm1(-x);
     return {change / rate, 1 - change};
   }
-  [[nodiscard]] double DisplacementAt(double log_share) const {
-    return DecayOf(beta_, log_share).sum;
-  }
   /// Returns y at Y short of slip.
   [[nodiscard]] double ContactDisplacement(double total) const {
     if (shape_exponent_ == 0) return total / (1 + compliance_);
-    return compliance_ == 0 ? total : DisplacementAt(LogShare(total));
+    return compliance_ == 0 ? total : DecayOf(beta_, LogShare(total)).sum;
   }
   [[nodiscard]] static double ForceAt(double log_share) { return -std::expm1(-log_share); }
 

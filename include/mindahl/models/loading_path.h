@@ -80,14 +80,6 @@ struct LoadingPath {
   return branch.start == BranchStart::kUnloaded ? 1 + branch.direction * path.asymmetry : 1.0;
 }
 
-/// Returns the displacement of zero force, in the unit of the path: where a virgin contact begins,
-/// or the middle of a steady loop.
-[[nodiscard]] inline double UnloadedAt(const LoadingPath& path) {
-  const Branch& first = path.branches.front();
-  if (first.start != BranchStart::kSteadyExtreme) return first.origin;
-  return first.origin + first.direction * first.amplitude;
-}
-
 /// Holds the state of the contact before the record.
 struct InitialContact {
   InitialState state = InitialState::kVirgin;
