@@ -24,8 +24,7 @@ std::vector<std::size_t> FindReversals(std::span<const double> displacement, dou
 
 std::vector<Excursion> FindExcursions(std::span<const double> displacement) {
   if (displacement.empty()) return {};
-  // The extremes, with the record's ends; those still open are kept in front of those not yet
-  // visited.
+  // The extremes, with the record's ends; those still open stand before those not yet visited.
   std::vector<std::size_t> points = FindReversals(displacement, 0.0);
   points.insert(points.begin(), 0);
   points.push_back(displacement.size() - 1);
@@ -114,8 +113,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range) {
   return kBeyond * 2 * noise * std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
 }
 
-/// True if one step between samples makes much of an excursion; false for long ones, which no jump
-/// makes.
+/// True if one step between samples makes much of an excursion; no jump makes a long one.
 bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
   if (excursion.duration() > kLongest) return false;
@@ -175,8 +173,7 @@ struct Plateau {
   [[nodiscard]] double gate() const { return std::min(2 * lower, std::sqrt(lower * upper)); }
 };
 
-/// Returns the widest of the plateaus below the drive's strokes that are nearly as good as the
-/// best.
+/// Returns the widest plateau below the drive's strokes that is nearly as good as the best.
 Plateau WidestPlateau(std::span<const JudgedExcursion> excursions) {
   const auto noise = static_cast<std::size_t>(
       std::ranges::count(excursions, Look::kNoise, &JudgedExcursion::look));

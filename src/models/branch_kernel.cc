@@ -12,8 +12,7 @@
 // always inlined takes the set of its caller;
 #define MINDAHL_INLINE_LAMBDA __attribute__((always_inline))
 #define MINDAHL_INLINE inline MINDAHL_INLINE_LAMBDA
-// of one that is built for each of these the program takes, when it starts, the widest that the
-// processor has.
+// of one that is built for each of these the program takes the processor's widest when it starts.
 #if defined(__x86_64__) && defined(__gnu_linux__)
 #define MINDAHL_FOR_INSTRUCTION_SETS \
   __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))

@@ -12,8 +12,7 @@ void Validate(const BranchLaw& law) {
   RequirePositive("tangential stiffness [N/m]", law.tangential_stiffness);
   RequirePositive("slip force [N]", law.slip_force);
   RequireNonNegative("shape exponent [-]", law.shape_exponent);
-  // On a path of at most 1e100 m no σx/Tc, nor one of a branch that is 2^α times as steep,
-  // overflows.
+  // On a path of at most 1e100 m no σx/Tc overflows, nor that of a branch 2^α times as steep.
   constexpr double kLargestShapeExponent = 100.0;
   constexpr double kLargestRate = 1e150;
   if (law.shape_exponent > kLargestShapeExponent) {

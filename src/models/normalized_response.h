@@ -81,9 +81,7 @@ using DisplacementGradient = std::array<std::span<double>, 3>;
 /// whose force is imposed, and its gradient, for solvers. T and δ turn together, so that Madelung's
 /// rules hold of forces as they do of displacements (docs/theory.md §5). On a branch from the
 /// reading T_r, which is where the force without its offset is t_r·Tc,
-///
 ///   d = d_r + s·m·v^β·y(φ),   φ = |T − T_r|/(m·v·Tc),   v = 1, or 1 − s·t_r of Dahl's own law
-///
 /// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law). A branch has a relative
 /// error below (6 + |1 − α|·|ln u|) ε. Keeps its buffer: nothing is allocated once it is large
 /// enough. Cost: three powers a sample with the gradient.

@@ -42,8 +42,7 @@ inline backbone::InSeries ShapeOn(const SprungShape& shape, const ScaledBranch& 
   return {shape.shape_exponent, compliance};
 }
 
-/// Calls use(shape) with the cheapest shape that is exact for α, behind a spring unless it is
-/// rigid.
+/// Calls use(shape) with the cheapest shape that is exact for α, behind a spring if there is one.
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
 template <typename Use>
 void WithShapeBehindSpring(double shape_exponent, double spring_travel, const Use& use) {

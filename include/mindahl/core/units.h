@@ -36,9 +36,8 @@ std::string UnitSymbols(Dimension dimension);
 
 /// Reads a number in `unit`, or one with a unit of the same kind: "210GPa" and "2.1e11" in Pa,
 /// "50 N", "48 N/um" in N/m; "inf" is a number. Empty where the text is neither.
-/// @param unit  N, m, s, Pa, rad, N m, a quotient of two of them, or 1 over one; "-" takes numbers
-/// and
-///   per cent
+/// @param unit  N, m, s, Pa, rad, N m, a quotient of two of them, or 1 over one; "-" takes
+///   numbers and per cent
 std::optional<double> ParseQuantity(std::string_view text, std::string_view unit);
 
 /// Returns where the unit of a quantity begins: at its end where it has none.

@@ -22,8 +22,7 @@ struct CycleFacts {
   bool steady = false;        ///< true if it counts and is within 5 % of the widest that do
   bool returns = false;       ///< ends where it began, to 5 % of its width
   /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
-  /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
-  /// stiffness.
+  /// means over five parts of it. Of a loop that slips it is the slip force.
   std::optional<double> half_gap;
   std::optional<double> centre_force;  ///< [N]: midway between the strokes, in the same place
   /// [m]: half the displacement between the strokes where the force is within T*/10 of

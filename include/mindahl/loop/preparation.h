@@ -40,8 +40,7 @@ struct PreparationOptions {
   Channel excitation = Channel::kDisplacement;
 
   /// Excursions up to this [unit of the excitation] are noise and make no reversal. Empty:
-  /// ChooseReversalGate, and at least what a known displacement noise reaches, 2√(2 ln n) standard
-  /// deviations.
+  /// ChooseReversalGate, at least 2√(2 ln n) standard deviations of a known displacement noise.
   std::optional<double> reversal_gate{};
 
   /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).

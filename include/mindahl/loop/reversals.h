@@ -60,8 +60,7 @@ class ReversalFinder {
 /// A reversal is registered at an extremum once the displacement has retreated from it by more than
 /// `gate`; smaller excursions are noise and make no reversal. With gate = 0 every change of
 /// direction counts. Repeated displacements are no reversal; of a dwell, the first sample is the
-/// extremum. Depends on the displacement alone, so it is done once a record whatever is fitted to
-/// it.
+/// extremum. Depends on the displacement alone: done once a record, whatever is fitted to it.
 ///
 /// @param displacement  [m], finite, in order of time
 /// @param gate          [m], finite, >= 0
@@ -86,8 +85,7 @@ struct ReversalGate {
 /// or made mostly of a jump between two samples. Of the gaps between ranges that nearly agree with
 /// these looks the widest in log(gate) is taken, never beyond a stroke that looks like the drive's;
 /// the gate lies in it, at most at twice the range below it. Where nothing looks like noise (a
-/// clean record, nested loops, few samples a cycle) it is 0. It is uncertain where the gap is
-/// narrow.
+/// clean record, nested loops, few samples a cycle) it is 0. A narrow gap makes it uncertain.
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.

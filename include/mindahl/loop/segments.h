@@ -19,7 +19,6 @@ struct TestPart {
 };
 
 /// Finds the part of a record that is its test, from the record alone. From either end are left out
-///
 ///  - a load ramp: where three fifths of the samples are under the median load, to 1 % or its white
 ///    noise, for four turning points or more, those before the second turning point under it, by
 ///    which what another load has left is an offset of the force, and those after it;
@@ -30,7 +29,6 @@ struct TestPart {
 ///    all are a part of the test;
 ///  - a rest: the displacement stays within 1 % of half its range, or within the noise that makes
 ///    no reversal, for longer than half a usual stroke. One sample of it stays.
-///
 /// @param record  finite, see Validate
 /// @returns the whole record where nothing is left out
 /// Cost: n log n at most, as ChooseReversalGate().

@@ -9,19 +9,15 @@
 
 namespace mindahl::models::backbone {
 
-/// The branch law in normalised form, the one curve that every model here follows (docs/theory.md
-/// §4).
-///
+/// The branch law in normalised form, which every model here follows (docs/theory.md §4).
 ///   φ(y) = 1 − u,   u = e_α(−y) = [1 − (1−α)·y]₊^{1/(1−α)},   e₁(−y) = exp(−y)
-///
 /// y = σx/Tc >= 0 is the displacement from the branch's origin over the elastic limit Tc/σ and φ
 /// the force over Tc. With β = 1 − α, w = β·y, z = 1 − w: u = z^{1/β} and φ' = u^α = u/z. Inline
 /// and free of checks: they are the inside of every kernel. Callers validate (branch_law.h,
 /// loading_path.h), so that neither y nor (1−α)y exceeds the largest double. Nothing here raises
 /// the invalid, overflow or division-by-zero flag of floating-point arithmetic.
 ///
-/// Errors, in ε = numeric_limits<Real>::epsilon(): φ relative 4 ε; u, φ' and the derivatives 4 ε of
-/// 1 (docs/accuracy.md).
+/// Errors (docs/accuracy.md), in ε of Real: φ relative 4 ε; u, φ' and the derivatives 4 ε of 1.
 
 /// Largest κ of a spring in series: Y − κ is still beyond slip at the largest Y.
 inline constexpr double kLargestSeriesCompliance = 1e100;
@@ -194,13 +190,10 @@ struct SeriesDerivatives {
 };
 
 /// The branch law in series with a spring, as a function of the displacement Y of both, over Tc/σ:
-///
 ///   Φ(Y) = φ(y),   y + κ·φ(y) = Y,   κ = σ/k the branch's stiffness over the spring's
-///
 /// (docs/theory.md §5). In ℓ = −log u both terms of the left side are decays of one kind, and no z
 /// or u cancels:
 ///   y = D(β,ℓ),  φ = D(1,ℓ),  D(c,ℓ) = (1 − e^{−cℓ})/c
-///
 /// Where κφ' >= 1 the spring is more compliant than the contact, elsewhere less: Y is there nearly
 /// linear in φ and in y, with a slope that varies by less than twofold. Tangents at the ends of
 /// either part start an iteration of third order, whose steps take the sum of the two decays for

@@ -3,9 +3,7 @@
 namespace mindahl::models {
 
 /// The three parameters that all models share: the branch law
-///
 ///   dT/dx = σ·(1 − T/Tc)^α, T(0) = 0   ⇒   f(x) = Tc·(1 − u),  u = [1 − (1−α)·σx/Tc]₊^{1/(1−α)}
-///
 /// Peyret et al. (2017) eq. 10 and its integral (docs/theory.md §4). α = 0 is Jenkins' element,
 /// α = 1/3 Mindlin's contact, α = 1 Dahl's exponential.
 struct BranchLaw {

@@ -22,9 +22,7 @@ struct ContactStateOptions {
 
 /// A contact that is moved step by step and keeps the memory of its friction law: for programs in
 /// which the next displacement follows from this force, as in discrete elements and control.
-///
 ///   T = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the present branch
-///
 /// as EvaluateForce of response.h, from which it differs in no bit where the compiler fuses no
 /// multiplication with an addition: every change of direction is a reversal. No step size enters;
 /// a step however long is exact for a motion that does not turn within it.
@@ -34,8 +32,7 @@ struct ContactStateOptions {
 class ContactState {
  public:
   /// Makes the virgin contact: T = 0 at δ₀, nothing to remember.
-  /// @param model  any of FrictionModels(), or a model of the user's that outlives the state and
-  ///   its copies
+  /// @param model  any of FrictionModels(), or another that outlives the state and its copies
   /// @param law    its α is used as it stands, also for a model that prescribes one
   /// @throws InvalidArgument for an invalid law, option or spring (as EvaluateForce)
   ContactState(const FrictionModel& model, const BranchLaw& law,
@@ -73,8 +70,7 @@ class ContactState {
 
   /// Returns dT/dδ [N/m] onward in the direction of the last motion, for a further iteration or an
   /// implicit step; σ before any. The stiffness against that direction is that of a new branch. At
-  /// a corner (α = 0 at slip) that of the slipping side; infinite where Dahl's σ·2^α exceeds the
-  /// largest double.
+  /// a corner (α = 0 at slip) that of the slipping side; infinite where Dahl's σ·2^α overflows.
   /// Error below 16 ε of the stiffness with which the branch starts, to what a change of δ by 4 ε
   /// would make. Cost: as of Move.
   [[nodiscard]] double TangentStiffness() const;

@@ -27,7 +27,6 @@ struct Excitation {
 ///   sine          A·sin(2πft)
 ///   triangle      the same extremes and zeros joined by straight lines
 ///   growing sine  A·g^{t/t_end − 1}·sin(2πft)
-///
 /// The envelope is A·g^{t/t_end − 1} of the growing sine, and A of the others.
 ///
 /// The sine is exact at its zeros and extremes and repeats bit for bit.

@@ -22,9 +22,7 @@ struct SeriesSpring {
 void Validate(const SeriesSpring& rig);
 
 /// Computes the tangential force [N] at each sample of a loading path: exact, no time step.
-///
 ///   T(δ) = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the sample's branch
-///
 /// with t₀ the force at the branch's origin and (v, span, k) the model's BranchScale: for a Masing
 /// law the sum over surviving extrema of docs/theory.md §5.
 /// @param path          as from MakeLoadingPath on the same displacements, for the model's memory

@@ -17,8 +17,7 @@ inline constexpr std::string_view kSimplifiedDahl = "simplified-dahl";
 /// @param displacement  [m] of a contact that was unloaded at displacement 0
 /// @param envelope      amplitude [m] of the excitation at each sample where it changes along the
 ///                      path, else empty
-/// @throws InvalidArgument for an invalid law, sizes that differ or a displacement that is not
-///   finite
+/// @throws InvalidArgument for an invalid law, sizes that differ or a displacement not finite
 /// Errors as of EvaluateForce().
 void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displacement,
                             std::span<const double> envelope, std::span<double> force);

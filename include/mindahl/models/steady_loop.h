@@ -14,9 +14,7 @@ double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double 
 /// Returns W [J] lost per cycle in the steady loop between ±amplitude [m]. For a Masing law
 /// 8∫₀^X f dx − 4X·f(X) (Johnson 7.57 for α = 1/3), without the cancellation of the two terms at
 /// small X; for the laws without memory the same integral over their own branches.
-/// @throws InvalidArgument for an invalid law or amplitude, and where the energy exceeds the
-/// largest
-///   double
+/// @throws InvalidArgument for an invalid law or amplitude, and where the energy overflows
 /// Relative error below 1 ε = 2.2e-16 for every X of a Masing law, where long double has 64 bits.
 /// For Dahl's own law below (16 + α) ε, for α < 0.05 and X within 10 % of the elastic limit, where
 /// W is a difference of nearly equal numbers, of 4XT*.
@@ -40,8 +38,7 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
 /// 1 − (T* + sT)/(2Tc) = (1 − T*/(2Tc))·(1 − sT/(2Tc − T*)).
 /// @param masing     any valid law
 /// @param amplitude  X [m] of the contact, without a rig's share (ContactAmplitude), finite, >= 0
-/// @throws InvalidArgument for an invalid law or amplitude, and where σ' and Tc' make no valid law:
-///   2Tc overflows
+/// @throws InvalidArgument for an invalid law or amplitude, and where 2Tc overflows
 /// Relative error below (2 + α) ε of σ', below 2 ε of Tc'.
 BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude);
 
