@@ -39,9 +39,6 @@ bool AreElastic(const KnownContact& known) {
   return known.body_1.youngs_modulus && known.body_1.poisson_ratio && known.body_2.youngs_modulus &&
          known.body_2.poisson_ratio;
 }
-bool KnowsCompliance(const KnownContact& known) {
-  return known.tangential_compliance || AreElastic(known);
-}
 bool KnowsRadii(const KnownContact& known) { return known.body_1.radius && known.body_2.radius; }
 bool KnowsHertz(const KnownContact& known) {
   return known.normal_load && AreElastic(known) && KnowsRadii(known);
@@ -103,8 +100,8 @@ UncertainValue Propagated(const KnownContact& known, const Compute& compute) {
 /// Returns a quantity by the values of what is known; empty where they do not determine it.
 std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double slip_force,
                               const KnownContact& known) {
-  const bool has_compliance = KnowsCompliance(known);
-  const double fitted_radius = has_compliance ? 0.125 * stiffness * ComplianceOf(known) : 0.0;
+  const std::optional<double> compliance = TangentialCompliance(known);
+  const double fitted_radius = compliance ? 0.125 * stiffness * *compliance : 0.0;
   const double radius = known.contact_radius ? known.contact_radius->value : fitted_radius;
   const bool has_pressure = known.normal_load && radius > 0;
   switch (quantity) {
@@ -113,7 +110,7 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
       return InRange("friction coefficient [-]",
                      static_cast<long double>(slip_force) / known.normal_load->value);
     case ContactQuantity::kContactRadius:
-      if (!has_compliance) return std::nullopt;
+      if (!compliance) return std::nullopt;
       return fitted_radius;
     case ContactQuantity::kTangentialCompliance:
       if (!known.contact_radius) return std::nullopt;
@@ -125,10 +122,9 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
       if (!has_pressure) return std::nullopt;
       return HertzMaximumPressure(known.normal_load->value, radius);
     case ContactQuantity::kStiffnessRatio:
-      if (!KnowsHertz(known) && !(known.contact_radius && has_compliance)) return std::nullopt;
-      return stiffness /
-             MindlinTangentialStiffness(KnowsHertz(known) ? HertzRadiusOf(known) : radius,
-                                        ComplianceOf(known));
+      if (!KnowsHertz(known) && !(known.contact_radius && compliance)) return std::nullopt;
+      return stiffness / MindlinTangentialStiffness(
+                             KnowsHertz(known) ? HertzRadiusOf(known) : radius, *compliance);
   }
   return std::nullopt;
 }
@@ -154,7 +150,8 @@ models::BranchLaw MapMindlinToDahl(const MindlinContact& contact) {
 }
 
 std::optional<double> TangentialCompliance(const KnownContact& known) {
-  return KnowsCompliance(known) ? std::optional(ComplianceOf(known)) : std::nullopt;
+  if (!known.tangential_compliance && !AreElastic(known)) return std::nullopt;
+  return ComplianceOf(known);
 }
 
 PredictedContact PredictContact(const KnownContact& known) {

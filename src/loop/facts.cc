@@ -161,8 +161,10 @@ std::optional<std::array<std::array<double, kParts>, 2>> PartsOf(const Cycle& cy
   return {{*up, *down}};
 }
 
+/// Measures the gap between the strokes and, where there is one, how far the contact slides.
 void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   constexpr double kMiddle = 1.0 / 3;  // of the stroke
+  constexpr double kAbout = 0.1;       // of T*
   auto parts = PartsOf<5>(cycle, kMiddle);
   if (!parts) return;
   auto& [up, down] = *parts;
@@ -170,10 +172,7 @@ void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   std::ranges::transform(up, down, gaps.begin(), std::minus<>());
   facts.half_gap = Median(gaps) / 2;
   facts.centre_force = (Median(up) + Median(down)) / 2;
-}
-
-void MeasureWidth(const Cycle& cycle, CycleFacts& facts) {
-  constexpr double kAbout = 0.1;  // of T*
+  if (!(facts.peak_force > 0)) return;
   const std::array edges = {*facts.centre_force - kAbout * facts.peak_force,
                             *facts.centre_force + kAbout * facts.peak_force};
   const auto sliding_back =
@@ -208,7 +207,6 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   if (rectangle > 0) facts.energy_ratio = facts.energy / rectangle;
   facts.returns = std::abs(way) <= kReturns * 2 * facts.amplitude;
   MeasureGap(cycle, facts);
-  if (facts.half_gap && facts.peak_force > 0) MeasureWidth(cycle, facts);
   return facts;
 }
 

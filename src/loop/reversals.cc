@@ -95,16 +95,6 @@ struct JudgedExcursion : Excursion {
   Look look = Look::kDrive;
 };
 
-/// Returns the median duration [samples] of the strokes at least half as wide as the widest.
-double MainDuration(std::span<const Excursion> excursions) {
-  std::vector<double> durations;
-  for (const Excursion& excursion : excursions) {
-    if (excursion.range >= excursions.back().range / 2)
-      durations.push_back(static_cast<double>(excursion.duration()));
-  }
-  return Median(durations);
-}
-
 /// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
 double ReachOfNoise(std::span<const double> displacement, double full_range) {
   const double noise = EstimateDisplacementNoise(displacement);
@@ -128,7 +118,11 @@ bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
 std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
                                    std::span<const Excursion> excursions) {
   const double main_range = excursions.back().range / 2;
-  const double main_duration = MainDuration(excursions);
+  std::vector<double> durations;  // [samples] of the main strokes
+  for (const Excursion& one : excursions) {
+    if (one.range >= main_range) durations.push_back(static_cast<double>(one.duration()));
+  }
+  const double main_duration = Median(durations);
   const auto lasts_at_most = [&](const Excursion& excursion, double share) {
     return excursion.range < main_range &&
            static_cast<double>(excursion.duration()) <= share * main_duration;

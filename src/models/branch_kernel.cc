@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "mindahl/models/backbone.h"
 #include "models/normalized_response.h"
 
 // Compilers differ in how functions are built for several instruction sets. A function that is
