@@ -1,7 +1,6 @@
 #include "mindahl/contact/hertz.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "contact/requirements.h"

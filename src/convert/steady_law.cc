@@ -12,7 +12,6 @@
 #include <limits>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"

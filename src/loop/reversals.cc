@@ -1,8 +1,6 @@
 #include "mindahl/loop/reversals.h"
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <ranges>
 
 #include "loop/excursions.h"

@@ -1,8 +1,5 @@
 #include "mindahl/models/backbone.h"
 
-#include <cmath>
-#include <limits>
-
 namespace mindahl::models::backbone {
 namespace {
 

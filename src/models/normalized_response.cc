@@ -1,8 +1,6 @@
 #include "models/normalized_response.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 #include "mindahl/core/error.h"

@@ -4,7 +4,6 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
-#include "mindahl/models/friction_model.h"
 #include "models/requirements.h"
 #include "models/scaled_branches.h"
 

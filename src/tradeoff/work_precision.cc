@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/loop/facts.h"
