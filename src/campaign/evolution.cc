@@ -475,8 +475,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const CourseDescription& course = evolution.description;
     if (quantity.symbol.empty() || !evolution.is_of_whole_test) continue;
-    const bool is_force = quantity.name == "friction_coefficient" ||
-                          quantity.name == "slip_force" || quantity.name == "half_gap";
+    const bool is_force = quantity.parameter == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     if (course.varies) {

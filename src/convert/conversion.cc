@@ -149,26 +149,19 @@ double EdgeOf(const Error& error, double tolerance, std::span<const double> plac
 std::map<std::string_view, double> ValuesOf(const SteadyLaw& law,
                                             const ConversionOptions& options) {
   std::map<std::string_view, double> values;
-  double stiffness = 0.0;
-  double slip_force = 0.0;
   if (const auto* bouc_wen = std::get_if<BoucWenLaw>(&law)) {
-    stiffness = bouc_wen->stiffness;
-    slip_force = bouc_wen->slip_force;
-    values["n"] = bouc_wen->exponent;
+    const auto& [stiffness, slip_force, exponent] = *bouc_wen;
     // γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
-    values["beta"] = values["gamma"] = 0.5 * std::pow(stiffness / slip_force, bouc_wen->exponent);
+    values = {{"k", stiffness}, {"Tc", slip_force}, {"n", exponent}};
+    values["beta"] = values["gamma"] = 0.5 * std::pow(stiffness / slip_force, exponent);
   } else if (const auto* elements = std::get_if<IwanElements>(&law)) {
-    stiffness = std::accumulate(elements->stiffness.begin(), elements->stiffness.end(), 0.0);
-    slip_force = std::accumulate(elements->slip_force.begin(), elements->slip_force.end(), 0.0);
+    values["k"] = std::accumulate(elements->stiffness.begin(), elements->stiffness.end(), 0.0);
+    values["Tc"] = std::accumulate(elements->slip_force.begin(), elements->slip_force.end(), 0.0);
   } else {
-    const models::BranchLaw& of_model = std::get<ModelLaw>(law).law;
-    stiffness = of_model.tangential_stiffness;
-    slip_force = of_model.slip_force;
-    values["alpha"] = of_model.shape_exponent;
+    const auto& [stiffness, shape_exponent, slip_force] = std::get<ModelLaw>(law).law;
+    values = {{"k", stiffness}, {"alpha", shape_exponent}, {"Tc", slip_force}};
   }
-  values["k"] = stiffness;
-  values["Tc"] = slip_force;
-  if (options.normal_load) values["mu"] = slip_force / *options.normal_load;
+  if (options.normal_load) values["mu"] = values["Tc"] / *options.normal_load;
   return values;
 }
 

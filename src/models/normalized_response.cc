@@ -188,11 +188,11 @@ NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& bran
   Point point{.d = branch.start.d + sign * branch.unit * y};
   if (!with_gradient) return point;
   const double log_u = share < 0.5 ? std::log1p(-share) : std::log(remaining);
-  const double log_v = branch.remaining == 1 ? 0.0 : std::log(branch.remaining);
+  const double log_v = branch.scale.remaining == 1 ? 0.0 : std::log(branch.scale.remaining);
   const double softening = std::expm1(-alpha * log_u);              // u^{−α} − 1
   const double of_v = log_v == 0 ? 1.0 : std::exp(-alpha * log_v);  // v^{−α}
   const double per_way = of_v * (1 + softening);                    // by |T − T_r|/Tc
-  const double per_remaining = -branch.span * of_v * softening;
+  const double per_remaining = -branch.scale.span * of_v * softening;
   point.gradient =
       branch.start.gradient +
       sign * (Eigen::Vector3d(per_way * std::abs(way) / law.slip_force,
@@ -220,8 +220,7 @@ bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLa
     const BranchScale scale = model.scale(from.direction * t, is_virgin);
     Branch branch{.origin = from.origin,
                   .height = scale.span * scale.remaining * law.slip_force,
-                  .span = scale.span,
-                  .remaining = scale.remaining,
+                  .scale = scale,
                   .unit = scale.span * std::pow(scale.remaining, 1 - law.shape_exponent),
                   .is_virgin = is_virgin,
                   .remaining_gradient =

@@ -106,11 +106,10 @@ class NormalizedDisplacement {
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   };
   struct Branch {
-    double origin = 0.0;     // T_r [N]
-    double height = 0.0;     // m·v·Tc [N]
-    double span = 1.0;       // m
-    double remaining = 1.0;  // v
-    double unit = 1.0;       // m·v^β
+    double origin = 0.0;  // T_r [N]
+    double height = 0.0;  // m·v·Tc [N]
+    BranchScale scale;    // m and v
+    double unit = 1.0;    // m·v^β
     bool is_virgin = false;
     Eigen::Vector3d remaining_gradient = Eigen::Vector3d::Zero();  // of v
     Point start = {};                                              // at the origin

@@ -19,7 +19,6 @@ using methods::Drive;
 using methods::Method;
 using methods::Resolution;
 using models::BranchLaw;
-using models::FrictionModel;
 
 namespace {
 
@@ -84,7 +83,7 @@ methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& 
       return cost;
     };
   }
-  const FrictionModel* model = models::FindFrictionModel(approximation.model);
+  const models::FrictionModel* model = models::FindFrictionModel(approximation.model);
   const Method* method = methods::FindMethod(approximation.method);
   if (model == nullptr || method == nullptr) {
     throw InvalidArgument(fmt::format("there is no model '{}' or no method '{}'",
