@@ -15,25 +15,6 @@
 namespace mindahl::loop {
 namespace {
 
-void Smooth(PreparedRecord& prepared, const PreparationOptions& options) {
-  const std::span<const double> displacement = prepared.readings().displacement;
-  prepared.encoder_step = EncoderStep(displacement);
-  if (options.excitation == Channel::kForce) return;
-  const auto [lowest, highest] = ExtremesOf(displacement);
-  // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
-  constexpr double kCoarse = 2e-4;
-  const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
-  if (options.displacement_noise) {
-    prepared.displacement_noise = *options.displacement_noise;
-  } else if (prepared.gate.gate > 0 || is_coarse) {
-    prepared.displacement_noise = EstimateDisplacementNoise(displacement);
-  }
-  if (!(prepared.displacement_noise > 0)) return;
-  prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
-  prepared.smoothed = Smoothed(displacement, prepared.smoothing);
-  prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
-}
-
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
@@ -44,10 +25,12 @@ void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.interpolated_force = std::move(interpolated.force);
 }
 
-void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
+/// Finds the turns of the excitation, and smooths a displacement that is noisy.
+void ReadMotion(PreparedRecord& prepared, const PreparationOptions& options) {
+  const RecordView readings = prepared.readings();
+  const std::span<const double> displacement = readings.displacement;
   const bool is_force = options.excitation == Channel::kForce;
-  const std::span<const double> excitation =
-      is_force ? prepared.force() : prepared.readings().displacement;
+  const std::span<const double> excitation = is_force ? readings.force : displacement;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
   const double deviations = std::sqrt(2 * std::log(static_cast<double>(prepared.size())));
   const double noise = is_force ? 0.0 : options.displacement_noise.value_or(0.0);
@@ -55,13 +38,21 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
   prepared.gate.gate =
       options.reversal_gate.value_or(std::max(prepared.gate.gate, 2 * deviations * noise));
   prepared.reversals = FindReversals(excitation, prepared.gate.gate);
-}
-
-/// Returns the first sample of a cycle, counted from 1; the record's size beyond the last.
-std::size_t StartOfCycle(const PreparedRecord& prepared, std::size_t cycle) {
-  if (cycle == 1) return 0;
-  const std::size_t turn = 2 * cycle - 3;  // two reversals a cycle, the first ends the way in
-  return turn < prepared.reversals.size() ? prepared.reversals[turn] : prepared.size();
+  prepared.encoder_step = EncoderStep(displacement);
+  if (is_force) return;
+  const auto [lowest, highest] = ExtremesOf(displacement);
+  // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
+  constexpr double kCoarse = 2e-4;
+  const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
+  if (options.displacement_noise) {
+    prepared.displacement_noise = noise;
+  } else if (prepared.gate.gate > 0 || is_coarse) {
+    prepared.displacement_noise = EstimateDisplacementNoise(displacement);
+  }
+  if (!(prepared.displacement_noise > 0)) return;
+  prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
+  prepared.smoothed = Smoothed(displacement, prepared.smoothing);
+  prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
 }
 
 /// Returns the samples [first, last) of the cycles and samples that are asked for.
@@ -75,14 +66,20 @@ std::pair<std::size_t, std::size_t> ChosenSamples(const PreparedRecord& prepared
                     "them: --select {0}=1:{4} is all",
                     what, range.first, range.last, number + 1, has));
   };
+  // Returns the first sample of a cycle, counted from 1; the record's size beyond the last.
+  const auto start_of = [&](std::size_t cycle) {
+    if (cycle == 1) return std::size_t{0};
+    const std::size_t turn = 2 * cycle - 3;  // two reversals a cycle, the first ends the way in
+    return turn < prepared.reversals.size() ? prepared.reversals[turn] : prepared.size();
+  };
   std::size_t first = 0;
   std::size_t last = prepared.size();
   if (options.cycles) {
     // The way in and the way out are cycles too, which the number of complete ones need not hold.
     require(*options.cycles, "cycles", 1 + prepared.reversals.size() / 2);
-    first = StartOfCycle(prepared, options.cycles->first);
+    first = start_of(options.cycles->first);
     // One beyond the last is none: no number of cycles is so large.
-    last = StartOfCycle(prepared, std::min(options.cycles->last, prepared.size()) + 1);
+    last = start_of(std::min(options.cycles->last, prepared.size()) + 1);
   }
   if (options.samples) {
     require(*options.samples, "samples", prepared.size());
@@ -194,8 +191,7 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
     PreparedRecord& prepared = result.records.emplace_back();
     prepared.record = records[r];
     LeaveOutGlitches(prepared);
-    FindTurns(prepared, options);
-    Smooth(prepared, options);
+    ReadMotion(prepared, options);
     LeaveOut(prepared, r, options);
     RecordView followed = prepared.readings();
     followed.displacement = prepared.displacement();

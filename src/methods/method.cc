@@ -88,13 +88,6 @@ class TableShape {
   double intervals_per_unit_ = 1.0;
 };
 
-/// A branch as far as it has been followed.
-struct FollowedBranch {
-  models::ScaledBranch scaled;
-  double y = 0.0;          // distance followed, in the branch's scale
-  double remaining = 1.0;  // u there
-};
-
 /// Follows each branch by the equation du/dy = −u₊^α, u(0) = 1, in the branch's own scale, in which
 /// it is one for every model and branch. A branch that is left and taken up again goes on from
 /// where it was left: that is return-point memory.
@@ -111,7 +104,12 @@ class BranchFollower {
 
   /// Returns the force over Tc.
   double MoveTo(std::size_t branch, double displacement) {
-    while (followed_.size() <= branch) Open(path_.branches[followed_.size()]);
+    while (followed_.size() <= branch) {
+      const models::Branch& next = path_.branches[followed_.size()];
+      const double origin_force = scaling_.OriginForce(
+          next, [&](std::size_t parent) { return MoveTo(parent, next.origin); });
+      followed_.push_back({scaling_.Start(next, origin_force)});
+    }
     FollowedBranch& on = followed_[branch];
     const double travel = displacement - on.scaled.origin;
     const double y = on.scaled.Normalize(travel);
@@ -126,11 +124,12 @@ class BranchFollower {
   [[nodiscard]] double cost() const { return cost_; }
 
  private:
-  void Open(const models::Branch& branch) {
-    const double origin_force = scaling_.OriginForce(
-        branch, [&](std::size_t parent) { return MoveTo(parent, branch.origin); });
-    followed_.push_back({scaling_.Start(branch, origin_force)});
-  }
+  /// A branch as far as it has been followed.
+  struct FollowedBranch {
+    models::ScaledBranch scaled;
+    double y = 0.0;          // distance followed, in the branch's scale
+    double remaining = 1.0;  // u there
+  };
 
   /// Returns u₊^α; 0 from slip on also for α = 0, and 1 before the branch, which a trial step asks
   /// for.

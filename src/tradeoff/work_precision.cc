@@ -62,13 +62,6 @@ std::vector<ClosedCycle> ClosedCycles(std::span<const double> displacement) {
   return cycles;
 }
 
-/// Returns the energy [J] lost over cycles.
-double LostEnergy(std::span<const ClosedCycle> cycles, const loop::RecordView& record) {
-  double energy = 0.0;
-  for (const auto& [first, last] : cycles) energy += loop::CycleEnergy(record, first, last);
-  return energy;
-}
-
 }  // namespace
 
 methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
@@ -120,9 +113,13 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
     const double error = std::abs(force[i] - exact[i]) / (peak > 0 ? peak : 1.0);
     precision.max_force = std::max(precision.max_force, error);
   }
-  const std::vector<ClosedCycle> cycles = ClosedCycles(displacement);
-  const double lost = LostEnergy(cycles, {displacement, exact});
-  if (lost != 0) precision.energy = std::abs(LostEnergy(cycles, {displacement, force}) / lost - 1);
+  double exact_energy = 0.0;  // lost over the cycles that close
+  double energy = 0.0;
+  for (const auto& [first, last] : ClosedCycles(displacement)) {
+    exact_energy += loop::CycleEnergy({displacement, exact}, first, last);
+    energy += loop::CycleEnergy({displacement, force}, first, last);
+  }
+  if (exact_energy != 0) precision.energy = std::abs(energy / exact_energy - 1);
   return precision;
 }
 
