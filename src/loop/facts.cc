@@ -183,25 +183,19 @@ void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   }
 }
 
-double PeakForce(const Cycle& cycle) {
-  const Column one = cycle.first.force;
-  const Column other = cycle.second.force;
-  const auto [one_least, one_greatest] = MovingMeanRange(one);
-  const auto [other_least, other_greatest] = MovingMeanRange(other);
-  const double ends = (one.front() + other.back()) / 2;
-  const double turn = one.back();
-  const double greatest = std::max({one_greatest, other_greatest, ends, turn});
-  const double least = std::min({one_least, other_least, ends, turn});
-  return (greatest - least) / 2;
-}
-
 CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> points,
                         const Cycle& cycle) {
   const double way = cycle.second.displacement.back() - cycle.first.displacement.front();
   CycleFacts facts;
   facts.start = points[0];
   facts.amplitude = cycle.first.travel() / 4 + cycle.second.travel() / 4;
-  facts.peak_force = PeakForce(cycle);
+  const Column one = cycle.first.force;
+  const Column other = cycle.second.force;
+  const auto [one_least, one_greatest] = MovingMeanRange(one);
+  const auto [other_least, other_greatest] = MovingMeanRange(other);
+  const auto [least, greatest] = std::minmax({one_least, other_least, one_greatest, other_greatest,
+                                              one.back(), (one.front() + other.back()) / 2});
+  facts.peak_force = (greatest - least) / 2;
   facts.energy = CycleEnergy(record, points[0], points[2]);
   const double rectangle = 4 * facts.amplitude * facts.peak_force;
   if (rectangle > 0) facts.energy_ratio = facts.energy / rectangle;
@@ -258,21 +252,6 @@ void MeasureStrokes(const RecordView& record, std::span<const std::size_t> point
       std::abs(x[points.front()] - x.front()) + std::abs(x.back() - x[points.back()]);
   const double swings = static_cast<double>(points.size() - 1) + ends / (2 * facts.amplitude);
   facts.complete_cycles = static_cast<std::size_t>(swings / 2 + kAtExtreme);
-}
-
-/// Returns the standard deviation of the sum of the energies of cycles that noise of both channels
-/// makes: noise enters ∮F dx by Σ((v[i+1] − v[i−1])/2)² of the other channel.
-double NoiseOfEnergies(const RecordView& record) {
-  const auto noise_of = [](Column noisy, Column other) {
-    double sum = 0.0;
-    for (std::size_t i = 1; i + 1 < other.size(); ++i) {
-      const double step = (other[i + 1] - other[i - 1]) / 2;
-      sum += step * step;
-    }
-    return NoiseByDifferences(noisy, 2) * std::sqrt(sum);
-  };
-  return std::hypot(noise_of(record.force, record.displacement),
-                    noise_of(record.displacement, record.force));
 }
 
 }  // namespace
@@ -386,6 +365,15 @@ int ForceSense(const RecordView& record, const LoopFacts& facts) {
   constexpr double kThin = 0.01;           // of the rectangle round the loop
   constexpr double kSureDeviations = 5.0;  // one record in 3.5 million
   const auto sign_of = [](double value) { return (value > 0) - (value < 0); };
+  // The noise of a channel enters ∮F dx by Σ((v[i+1] − v[i−1])/2)² of the other one.
+  const auto noise_of = [](Column noisy, Column other) {
+    double sum = 0.0;
+    for (std::size_t i = 1; i + 1 < other.size(); ++i) {
+      const double step = (other[i + 1] - other[i - 1]) / 2;
+      sum += step * step;
+    }
+    return NoiseByDifferences(noisy, 2) * std::sqrt(sum);
+  };
   const Extremes displacement = ExtremesOf(record.displacement);
   const Extremes force = ExtremesOf(record.force);
   const auto cycles = static_cast<double>(facts.cycles.size());
@@ -394,7 +382,9 @@ int ForceSense(const RecordView& record, const LoopFacts& facts) {
   double energies = 0.0;
   for (const CycleFacts& cycle : facts.cycles) energies += cycle.energy;
   if (std::abs(energies) > kThin * rectangles &&
-      std::abs(energies) > kSureDeviations * NoiseOfEnergies(record)) {
+      std::abs(energies) >
+          kSureDeviations * std::hypot(noise_of(record.force, record.displacement),
+                                       noise_of(record.displacement, record.force))) {
     return sign_of(energies);
   }
   return sign_of(boost::math::statistics::covariance(record.displacement, record.force));

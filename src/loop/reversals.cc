@@ -93,14 +93,6 @@ struct JudgedExcursion : Excursion {
   Look look = Look::kDrive;
 };
 
-/// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
-double ReachOfNoise(std::span<const double> displacement, double full_range) {
-  const double noise = EstimateDisplacementNoise(displacement);
-  if (noise > kRough * full_range) return 0.0;
-  // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
-  return kBeyond * 2 * noise * std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
-}
-
 /// True if one step between samples makes much of an excursion; no jump makes a long one.
 bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
@@ -131,7 +123,12 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
   if (std::ranges::none_of(excursions, is_brief)) return {};
   std::vector<JudgedExcursion> judged;
   judged.reserve(excursions.size());
-  const double reach = ReachOfNoise(displacement, excursions.back().range);
+  // The widest excursion that white noise or an encoder's last digit makes: normal noise of n
+  // samples reaches √(2 ln n) standard deviations to either side.
+  const double noise = EstimateDisplacementNoise(displacement);
+  const double deviations = std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
+  const bool is_rough = noise > kRough * excursions.back().range;
+  const double reach = is_rough ? 0.0 : kBeyond * 2 * noise * deviations;
   for (const Excursion& one : excursions) {
     const bool is_brief_inside = is_brief(one) && one.reversals != 1;
     Look look = is_brief_inside ? Look::kOdd : Look::kDrive;
