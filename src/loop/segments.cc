@@ -48,14 +48,13 @@ struct Part {
   RecordView record;
   double gate = 0.0;                // [m]
   std::vector<std::size_t> points;  // samples of its ends and of its reversals
-  std::string_view before{};        // why what is before it is left out
-  std::string_view after{};
+  TestPart test{};                  // why what is before and after it is left out
 };
 
 /// Leaves out all before a sample and after another.
 void Keep(Part& part, std::string_view reason, std::size_t first, std::size_t last) {
-  if (first > part.points.front() && part.before.empty()) part.before = reason;
-  if (last < part.points.back() && part.after.empty()) part.after = reason;
+  if (first > part.points.front() && part.test.before.empty()) part.test.before = reason;
+  if (last < part.points.back() && part.test.after.empty()) part.test.after = reason;
   std::erase_if(part.points, [&](std::size_t point) { return point <= first || point >= last; });
   part.points.insert(part.points.begin(), first);
   part.points.push_back(last);
@@ -168,11 +167,10 @@ TestPart FindTestPart(const RecordView& record) {
   LeaveOutLoadRamps(part);
   LeaveOutTravels(part);
   LeaveOutRests(part);
-  return {.first = part.points.front(),
-          .last = part.points.back() + 1,
-          .before = part.before,
-          .after = part.after,
-          .begins_cycled = !part.before.empty() && part.before != "rest"};
+  part.test.first = part.points.front();
+  part.test.last = part.points.back() + 1;
+  part.test.begins_cycled = !part.test.before.empty() && part.test.before != "rest";
+  return part.test;
 }
 
 }  // namespace mindahl::loop

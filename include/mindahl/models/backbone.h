@@ -315,8 +315,7 @@ class InSeries {
       const double step = newton * LogRatio(share);
       log_share = std::max(log_share + step, log_share / 2);
       // The next error is below the cube of this step's.
-      if (std::abs(step) <= kSettled * log_share) break;
-      if (std::abs(residual) <= kRounding * total) break;
+      if (std::abs(step) <= kSettled * log_share || std::abs(residual) <= kRounding * total) break;
     }
     return log_share;
   }

@@ -82,9 +82,8 @@ class ContactState {
  private:
   using Jenkins = backbone::JenkinsShape;
   using Mindlin = backbone::MindlinShape;
-  using General = backbone::GeneralShape<double>;
   /// φ on a branch; behind a spring each branch has its own.
-  using Shape = std::variant<Jenkins, Mindlin, General, backbone::InSeries>;
+  using Shape = std::variant<Jenkins, Mindlin, backbone::GeneralShape<double>, backbone::InSeries>;
 
   /// A branch as it is run in one direction s, in which sgn(e) = s.
   struct Course {
