@@ -42,32 +42,35 @@ using request::Strictness;
 
 // --- adding commands and options
 
+/// Refuses outputs of a command that could not be written, as AddCommand() says.
+void RequireOutputs(const CLI::App& command);
+
 /// Adds a command to the program. Before running, it refuses outputs that are not writable, that
 /// name one file twice, or that are also inputs. An option whose value is called PATH or DIR writes
 /// there, "-" to standard output where its help says so; one called FILE is read.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
 ///                  continues the last begins with blanks
-CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
-                     std::initializer_list<std::string_view> examples, std::function<void()> run);
-/// Adds one that runs with options.
-/// @returns the command, and the options, which live as long
+/// @returns the command, and the options that it runs with, which live as long
 template <typename Options>
 std::pair<CLI::App&, Options&> AddCommand(CLI::App& program, Console& console,
                                           const std::string& name, const std::string& about,
                                           std::initializer_list<std::string_view> examples,
                                           void (*run)(const Options&, Console&)) {
   const auto options = std::make_shared<Options>();
-  return {AddCommand(program, name, about, examples,
-                     [options, run, &console] { run(*options, console); }),
-          *options};
+  CLI::App* const command = program.add_subcommand(name, about);
+  command->footer(
+      fmt::format("Examples:\n  {}\n\n{}", fmt::join(examples, "\n  "), program.get_footer()));
+  command->set_help_all_flag("--help-all", "Print all options and exit");
+  command->callback([command, options, run, &console] {
+    RequireOutputs(*command);
+    run(*options, console);
+  });
+  return {*command, *options};
 }
 
 /// Lets the help of a command show these options alone, and `--help-all` all of them.
 /// @param names  with their dashes, in the order of the help
 void ShowFirst(CLI::App& command, std::vector<std::string> names);
-
-/// Transforms a quantity with its unit, "50 N", to the number in `unit`.
-CLI::Validator InUnit(const std::string& unit);
 
 /// Adds options to one group of a command's help. A name without dashes stands for the words that
 /// are no options.
@@ -85,7 +88,15 @@ class OptionGroup {
   template <typename Value>
   CLI::Option* AddQuantity(const std::string& option, Value& value, const std::string& help,
                            const std::string& type, const std::string& unit) const {
-    return Add(option, value, help, type)->transform(InUnit(unit));
+    const auto to_number = [unit](std::string& text) -> std::string {
+      const std::optional<double> number = ParseQuantity(text, unit);
+      if (!number) {
+        return fmt::format("'{}' is no quantity in {}: write a number or its unit", text, unit);
+      }
+      text = fmt::format("{}", *number);
+      return {};
+    };
+    return Add(option, value, help, type)->transform({to_number, /*description=*/""});
   }
   /// Adds an option whose default the help shows.
   template <typename Value>
@@ -200,9 +211,6 @@ void Say(std::string_view what, const std::vector<std::string>& sentences, Conso
 /// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
 /// JSON goes there.
 void WriteAnswer(Console& console, std::string_view json, std::string_view text);
-
-/// Refuses outputs of a command that could not be written, as AddCommand() says.
-void RequireOutputs(const CLI::App& command);
 
 /// Refuses a file that is given twice, by one name or by two: its samples would count twice.
 /// @throws InputError naming both

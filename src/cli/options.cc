@@ -2,19 +2,6 @@
 
 namespace mindahl::cli {
 
-CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
-                     std::initializer_list<std::string_view> examples, std::function<void()> run) {
-  CLI::App* command = program.add_subcommand(name, about);
-  command->footer(
-      fmt::format("Examples:\n  {}\n\n{}", fmt::join(examples, "\n  "), program.get_footer()));
-  command->set_help_all_flag("--help-all", "Print all options and exit");
-  command->callback([command, run = std::move(run)] {
-    RequireOutputs(*command);
-    run();
-  });
-  return *command;
-}
-
 void ShowFirst(CLI::App& command, std::vector<std::string> names) {
   const auto show = [names = std::move(names)](const CLI::App* app, const std::string& name,
                                                CLI::AppFormatMode mode) {
@@ -28,18 +15,6 @@ void ShowFirst(CLI::App& command, std::vector<std::string> names) {
            all.make_footer(app);
   };
   command.formatter_fn(show);
-}
-
-CLI::Validator InUnit(const std::string& unit) {
-  const auto convert = [unit](std::string& text) -> std::string {
-    const std::optional<double> value = ParseQuantity(text, unit);
-    if (!value) {
-      return fmt::format("'{}' is no quantity in {}: write a number or its unit", text, unit);
-    }
-    text = fmt::format("{}", *value);
-    return {};
-  };
-  return {convert, /*description=*/""};
 }
 
 CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column) {

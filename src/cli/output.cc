@@ -46,22 +46,16 @@ void RequireWritable(const std::string& option, const std::string& path) {
   }
 }
 
-/// Returns the files that a command was given to read, a configuration the last.
-std::vector<std::string> InputsOf(const CLI::App& command) {
-  std::vector<std::string> inputs;
-  for (const CLI::App* app : {&command, command.get_parent()}) {
-    for (const CLI::Option* option : app->get_options()) {
-      if (option->get_type_name() != "FILE") continue;
-      inputs.insert(inputs.end(), option->results().begin(), option->results().end());
-    }
-  }
-  return inputs;
-}
-
 }  // namespace
 
 void RequireOutputs(const CLI::App& command) {
-  const std::vector<std::string> inputs = InputsOf(command);
+  std::vector<std::string> inputs;  // a configuration the last
+  for (const CLI::App* app : {&command, command.get_parent()}) {
+    for (const CLI::Option* each : app->get_options()) {
+      if (each->get_type_name() != "FILE") continue;
+      inputs.insert(inputs.end(), each->results().begin(), each->results().end());
+    }
+  }
   std::vector<std::string> outputs;
   for (const CLI::Option* each : command.get_options()) {
     const std::string type = each->get_type_name();

@@ -15,6 +15,7 @@ namespace mindahl::cli {
 
 using methods::Method;
 using models::FrictionModel;
+using models::Waveform;
 
 namespace {
 
@@ -46,7 +47,7 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   }
   models::ExcitationOptions excitation = options.excitation;
   if (excitation.growth != models::ExcitationOptions().growth &&
-      excitation.waveform != models::Waveform::kGrowingSine) {
+      excitation.waveform != Waveform::kGrowingSine) {
     Refuse("--growth has no effect unless --waveform is growing-sine: leave it out");
   }
   if (options.lambda.has_value() == options.amplitude.has_value()) {
@@ -63,7 +64,7 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     excitation.amplitude = *options.lambda * slip;
   }
   motion = models::MakeExcitation(excitation);
-  if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();
+  if (excitation.waveform != Waveform::kGrowingSine) motion.envelope.clear();
   return motion;
 }
 
@@ -92,37 +93,6 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
             options.output.empty() ? "-" : options.output, console);
 }
 
-void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
-  const OptionGroup group(command, "Excitation");
-  group.AddChoice("--waveform", request.excitation.waveform,
-                  {{"sine", models::Waveform::kSine},
-                   {"triangle", models::Waveform::kTriangle},
-                   {"growing-sine", models::Waveform::kGrowingSine}},
-                  "imposed displacement");
-  group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
-  group.AddQuantity("--amplitude", request.amplitude, "amplitude [m]", "M", "m");
-  group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
-  group.AddCount("--samples-per-cycle", request.excitation.samples_per_cycle,
-                 "samples in a cycle; multiples of 4 put samples on the extremes", 4);
-  group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
-  group.AddShown("--growth", request.excitation.growth,
-                 "growing sine: last amplitude over the first [-]");
-  CLI::Option* const path = AddPath(group, request.path, request.displacement);
-  for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
-                           "--samples-per-cycle", "--frequency", "--growth"}) {
-    path->excludes(command.get_option(name));
-  }
-}
-
-std::string MethodHelp() {
-  std::string help = "how the response is computed; --steps counts, by default";
-  for (const Method& method : methods::Methods()) {
-    help += fmt::format("\n{}: {}", method.name, method.title);
-    if (!method.steps.empty()) help += fmt::format(" ({} {})", method.default_steps, method.steps);
-  }
-  return help;
-}
-
 }  // namespace
 
 void AddSimulateCommand(CLI::App& app, Console& console) {
@@ -142,7 +112,25 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   plain.AddWord("--model", options.model, models, "friction model");
   AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   AddContactOptions(command, options.law.contact, /*has_friction=*/true);
-  AddDriveOptions(command, options);
+  const OptionGroup drive(command, "Excitation");
+  drive.AddChoice("--waveform", options.excitation.waveform,
+                  {{"sine", Waveform::kSine},
+                   {"triangle", Waveform::kTriangle},
+                   {"growing-sine", Waveform::kGrowingSine}},
+                  "imposed displacement");
+  drive.Add("--lambda", options.lambda, "amplitude over the gross-slip displacement [-]", "L");
+  drive.AddQuantity("--amplitude", options.amplitude, "amplitude [m]", "M", "m");
+  drive.AddShown("--cycles", options.excitation.cycles, "cycles [-]");
+  drive.AddCount("--samples-per-cycle", options.excitation.samples_per_cycle,
+                 "samples in a cycle; multiples of 4 put samples on the extremes", 4);
+  drive.AddShown("--frequency", options.excitation.frequency, "frequency [Hz]");
+  drive.AddShown("--growth", options.excitation.growth,
+                 "growing sine: last amplitude over the first [-]");
+  CLI::Option* const path = AddPath(drive, options.path, options.displacement);
+  for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
+                           "--samples-per-cycle", "--frequency", "--growth"}) {
+    path->excludes(command.get_option(name));
+  }
 
   const OptionGroup noise(command, "Noise");
   noise.AddQuantity("--noise-force", options.force_noise, "standard deviation [N]", "N", "N");
@@ -151,8 +139,12 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   noise.AddCount("--seed", options.seed, "seed of the noise", 0);
 
   const OptionGroup method(command, "Method");
-  method.AddWord("--method", options.method, NamesOf(methods::Methods(), &Method::name),
-                 MethodHelp());
+  std::string help = "how the response is computed; --steps counts, by default";
+  for (const Method& of : methods::Methods()) {
+    help += fmt::format("\n{}: {}", of.name, of.title);
+    if (!of.steps.empty()) help += fmt::format(" ({} {})", of.default_steps, of.steps);
+  }
+  method.AddWord("--method", options.method, NamesOf(methods::Methods(), &Method::name), help);
   method.AddCount("--steps", options.steps,
                   "substeps a sample, elements of iwan, intervals of table");
   plain.Add("-o,--output", options.output, "CSV file; default standard output", "PATH");

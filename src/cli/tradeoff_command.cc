@@ -93,18 +93,6 @@ std::string ToText(const Json& excitations, const BranchLaw& law, double toleran
   return text;
 }
 
-/// Returns every point as CSV.
-std::string PointsCsv(const Json& excitations) {
-  Json rows = Json::array();
-  for (const Json& excitation : excitations) {
-    for (const Json& point : excitation["points"]) {
-      rows.push_back({{"excitation", excitation["name"]}});
-      rows.back().update(point);
-    }
-  }
-  return report::TableCsv(rows);
-}
-
 io::Plot ToPlot(const Json& excitations) {
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
   io::Plot plot{.title = "Work and precision: largest force error against cost"};
@@ -134,7 +122,16 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   const Json excitations = MeasureAll(options, law);
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(excitations), options.plot);
-  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(excitations));
+  if (!options.csv.empty()) {
+    Json points = Json::array();
+    for (const Json& excitation : excitations) {
+      for (const Json& point : excitation["points"]) {
+        points.push_back({{"excitation", excitation["name"]}});
+        points.back().update(point);
+      }
+    }
+    io::WriteFileAtomically(options.csv, report::TableCsv(points));
+  }
   WriteAnswer(console,
               report::Document("mindahl.tradeoff/1", {{"law", report::LawJson(law)},
                                                       {"tolerance", options.tolerance},

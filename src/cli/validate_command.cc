@@ -22,10 +22,8 @@ Json RowsOf(const std::vector<ValidationRow>& rows) {
                   {"slip_force_error", if_drawn(row.errors[2])}};
     if (row.noise > 0) {
       entry["worst_standard_errors"] = if_drawn(row.worst_standardized);
-      entry["coverage"] =
-          row.intervals == 0
-              ? Json()
-              : Json(static_cast<double>(row.covering) / static_cast<double>(row.intervals));
+      entry["coverage"] =  // null without an interval
+          NumberOrNull(static_cast<double>(row.covering) / static_cast<double>(row.intervals));
     }
     return entry;
   });
