@@ -72,11 +72,7 @@ class Axis {
     const double middle = (At(least) + At(greatest)) / 2;
     from_ = middle - (0.5 + margin) * span;
     to_ = middle + (0.5 + margin) * span;
-    if (is_logarithmic) {
-      PlaceTicsOfPowers();
-    } else {
-      PlaceTics();
-    }
+    is_logarithmic ? PlaceTicsOfPowers() : PlaceTics();
   }
 
   [[nodiscard]] double Pixel(double value) const {
