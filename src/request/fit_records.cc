@@ -131,9 +131,7 @@ bool WithdrawPreference(FitResult& fit) {
 /// record supports it, by Dahl's own.
 TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
                        std::span<const Record> records) {
-  TermSelection asked;
-  asked.options = options;
-  asked.fit = identification::Fit(records, options);
+  TermSelection asked{.options = options, .fit = identification::Fit(records, options)};
   if (chooses_law && asked.fit.prefers_other_law()) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
@@ -158,11 +156,8 @@ TermSelection FitAsked(const FitRequest& request, FitOptions options,
   const bool chooses_law = request.fit.model == nullptr;
   FitOptions symmetric = options;
   std::size_t of_asymmetry = std::erase(symmetric.terms, "asymmetry");
-  const auto erase = [&](auto& values) { of_asymmetry += values.erase("asymmetry"); };
-  erase(symmetric.fixed);
-  erase(symmetric.priors);
-  erase(symmetric.start);
-  erase(symmetric.bounds);
+  const auto erase = [&](auto&... of) { of_asymmetry += (of.erase("asymmetry") + ...); };
+  erase(symmetric.fixed, symmetric.priors, symmetric.start, symmetric.bounds);
   if (chooses_law && of_asymmetry > 0) {
     options.model = FitByLaw(true, symmetric, records).options.model;
   }
