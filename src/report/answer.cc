@@ -49,9 +49,7 @@ std::string CauseText(const identification::Cause& cause) {
 
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
-  constexpr auto kSaid =
-      std::to_array<std::string_view>({"other_law", "model_inadequate", "no_closed_cycle"});
-  return std::ranges::find(kSaid, code) != kSaid.end();
+  return code == "other_law" || code == "model_inadequate" || code == "no_closed_cycle";
 }
 
 /// Makes the lines of one answer, so that a finding is said once.

@@ -125,18 +125,6 @@ bool ExcludesAThird(const ParameterEstimate& estimate) {
          (estimate.upper95 && *estimate.upper95 < kThird);
 }
 
-ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
-  ContactQuantity load{.name = "normal_load", .symbol = "N", .unit = "N"};
-  if (!known.normal_load) return load;
-  load.value = known.normal_load->value;
-  const double half_width = NormalQuantile(fit.confidence) * known.normal_load->standard_error;
-  if (half_width > 0) {
-    load.lower = *load.value - half_width;
-    load.upper = *load.value + half_width;
-  }
-  return load;
-}
-
 }  // namespace
 
 std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownContact& known) {
@@ -159,8 +147,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     quantities.push_back(SlipForce(fit, {"slip_force_positive", "Tc up", "N", "slip_force"}, 1));
     quantities.push_back(SlipForce(fit, {"slip_force_negative", "down", "N", "slip_force"}, -1));
   }
-  ContactQuantity gross_slip{
-      .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
+  ContactQuantity& gross_slip =
+      quantities.emplace_back("gross_slip_displacement", "δc", "m", "alpha");
   const ParameterEstimate& shape = *fit.Find("alpha");
   const double alpha = shape.status == ParameterStatus::kFixed ? shape.value : kThird;
   // It is that of Mindlin's contact, and slip is never complete where α is 1 or more.
@@ -169,8 +157,14 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1},
          gross_slip);
   }
-  quantities.push_back(std::move(gross_slip));
-  quantities.push_back(NormalLoad(fit, known));
+  ContactQuantity& load = quantities.emplace_back("normal_load", "N", "N");
+  if (!known.normal_load) return quantities;
+  load.value = known.normal_load->value;
+  const double half_width = NormalQuantile(fit.confidence) * known.normal_load->standard_error;
+  if (half_width > 0) {
+    load.lower = *load.value - half_width;
+    load.upper = *load.value + half_width;
+  }
   return quantities;
 }
 

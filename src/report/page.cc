@@ -48,35 +48,9 @@ std::string NextHtml(const Report& report, std::string_view command) {
                                  io::HtmlText(report.next->options)));
 }
 
-/// A value with its interval, which is drawn as a bar.
-struct Bar {
-  std::string_view symbol;
-  Shown shown;
-  std::string_view unit;
-  std::string_view judgement;
-  std::optional<double> mark = {};
-};
-
-/// Returns friction (the slip force without a load), σ and α; none that has no value.
-std::vector<Bar> BarsOf(const Report& report) {
-  std::vector<Bar> bars;
-  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
-    const ParameterEstimate& estimate = *report.fit.Find(name);
-    bars.push_back({symbol, WhatIsShown(estimate), estimate.unit, JudgementOf(estimate), mark});
-  };
-  add("Tc", "slip_force");
-  const ContactQuantity* friction = report.Find("friction_coefficient");
-  if (friction != nullptr && friction->value) {
-    bars[0] = {
-        "μ", {friction->value, friction->lower, friction->upper}, "-", bars[0].judgement, {}};
-  }
-  add("σ", "sigma");
-  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
-  std::erase_if(bars, [](const Bar& bar) { return !bar.shown.is_estimate(); });
-  return bars;
-}
-
-/// Returns the bars, α's with 1/3 marked. One is green only of what may be quoted. "" without any.
+/// Returns friction (the slip force without a load), σ and α as bars with their intervals, none
+/// that has no value, and 1/3 as a mark of α. One is green only of what may be quoted. "" without
+/// any.
 std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
@@ -84,11 +58,14 @@ std::string IntervalsHtml(const Report& report) {
   constexpr int kLeast = 64;  // [px]: one bar alone is still to be seen on a telephone
   std::string svg;
   int middle = 31;
-  for (const Bar& bar : BarsOf(report)) {
-    const double value = *bar.shown.value;
-    const auto [lower, upper] = std::pair(bar.shown.lower, bar.shown.upper);
-    double least = std::min(lower.value_or(value), bar.mark.value_or(value));
-    double greatest = std::max(upper.value_or(value), bar.mark.value_or(value));
+  const auto draw = [&](const char* symbol, const Shown& shown, std::string_view unit,
+                        std::string_view judgement, std::optional<double> mark = {}) {
+    if (!shown.is_estimate()) return;
+    const double value = *shown.value;
+    const std::optional<double>& lower = shown.lower;
+    const std::optional<double>& upper = shown.upper;
+    double least = std::min(lower.value_or(value), mark.value_or(value));
+    double greatest = std::max(upper.value_or(value), mark.value_or(value));
     const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(value);
     least -= margin;
     greatest += margin;
@@ -102,16 +79,28 @@ std::string IntervalsHtml(const Report& report) {
         "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>"
         "<path class=\"interval {}\" d=\"M{:.1f} {}H{:.1f}v12H{:.1f}Z\"/>"
         "<path class=\"axis\" d=\"M{:.1f} {}v18\"/>",
-        middle + 5, bar.symbol, kLeft, middle - 17,
-        io::HtmlText(QuantityWithInterval(value, lower, upper, bar.unit)), kLeft, middle, kRight,
-        bar.judgement, left, middle - 6, right, left, x(value), middle - 9);
-    if (bar.mark) {
+        middle + 5, symbol, kLeft, middle - 17,
+        io::HtmlText(QuantityWithInterval(value, lower, upper, unit)), kLeft, middle, kRight,
+        judgement, left, middle - 6, right, left, x(value), middle - 9);
+    if (mark) {
       svg += fmt::format(
           "<path class=\"mark\" d=\"M{:.1f} {}v24\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
-          x(*bar.mark), middle - 12, x(*bar.mark) + 4, middle + 18);
+          x(*mark), middle - 12, x(*mark) + 4, middle + 18);
     }
     middle += kRow;
+  };
+  const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
+  const ParameterEstimate& sigma = *report.fit.Find("sigma");
+  const ParameterEstimate& alpha = *report.fit.Find("alpha");
+  const ContactQuantity* friction = report.Find("friction_coefficient");
+  if (friction != nullptr && friction->value) {
+    draw("μ", {friction->value, friction->lower, friction->upper}, "-", JudgementOf(slip_force));
+  } else {
+    draw("Tc", WhatIsShown(slip_force), slip_force.unit, JudgementOf(slip_force));
   }
+  draw("σ", WhatIsShown(sigma), sigma.unit, JudgementOf(sigma));
+  draw("α", WhatIsShown(alpha), alpha.unit, JudgementOf(alpha),
+       report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
   if (svg.empty()) return "";
   return FigureHtml(
       "intervals", fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),

@@ -20,7 +20,7 @@ namespace {
 
 /// Puts the fit into the units of a torque.
 void TranslateToTorque(Report& report) {
-  report.units = kUnitsOfTorque;
+  report.units = UnitsOf(report.is_torsional());
   for (ParameterEstimate& estimate : report.fit.parameters) {
     // Newtons over the unit of a column, whatever that is.
     const bool is_of_column = estimate.name.starts_with(identification::NameOfCovariate(""));

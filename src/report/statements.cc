@@ -13,77 +13,14 @@
 
 namespace mindahl::report {
 
-std::string NameOf(std::span<const std::string> files) {
-  if (files.empty()) return "";
-  std::string name = std::filesystem::path(files.front()).filename().string();
-  if (files.size() > 1) name += fmt::format(" and {} more", files.size() - 1);
-  return name;
-}
+namespace {
 
-bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
-
-std::string_view VerdictWord(const Report& report) {
-  if (report.failed()) return "failed";
-  if (!report.fit.converged) return "not converged";
-  return IsJudged(report) ? Name(report.fit.adequacy.verdict) : "not judged";
-}
-
-std::string_view JudgementOf(std::string_view verdict) {
-  if (verdict == "adequate") return kGood;
-  return verdict == "doubtful" || verdict == "not judged" ? kPoor : kBad;
-}
-
-std::string_view JudgementOf(const ParameterEstimate& estimate) {
-  const Shown shown = WhatIsShown(estimate);
-  if (shown.is_held) return kPlain;
-  if (!shown.value && !shown.is_limit()) return kBad;
-  return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
-}
-
-Shown WhatIsShown(const ParameterEstimate& estimate) {
-  const std::optional<double>& lower = estimate.lower95;
-  const std::optional<double>& upper = estimate.upper95;
-  if (estimate.status == ParameterStatus::kFixed) return {estimate.value, {}, {}, true};
-  if (estimate.identifiability == Identifiability::kBoundedBelow) return {{}, lower, {}};
-  if (!estimate.is_known()) return {};
-  if (estimate.status == ParameterStatus::kAtLowerBound) return {{}, {}, upper};
-  if (estimate.status == ParameterStatus::kAtUpperBound && !upper) return {{}, lower, {}};
-  return {estimate.value, lower, upper};
-}
-
-std::string ValueText(const ParameterEstimate& estimate) {
-  const auto [value, lower, upper, is_held] = WhatIsShown(estimate);
-  const std::string text = QuantityWithInterval(value, lower, upper, estimate.unit);
-  return text.empty() ? "not determined" : is_held ? text + " (held)" : text;
-}
-
+/// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
 std::string PercentText(double share) {
   constexpr double kLeast = 1e-4;
   if (share > 0 && share < kLeast) return "< 0.01 %";
   return fmt::format("{} %", Quantity(100 * share, "-", 2));
 }
-
-std::string MisfitShare(double over_half_gap) {
-  return fmt::format("{} the half gap",
-                     over_half_gap >= 1 ? "more than" : PercentText(over_half_gap) + " of");
-}
-
-std::string NextStatement(const NextStep& next) {
-  const std::string before = PercentText(next.misfit_before);
-  const std::string change = next.is_over_amplitude
-                                 ? fmt::format("{} of the half gap → {} of the amplitude", before,
-                                               PercentText(next.misfit_after))
-                                 : fmt::format("{} → {}", before, MisfitShare(next.misfit_after));
-  return fmt::format("{}{}misfit {} (tried)", next.text, next.text.empty() ? "" : ", ", change);
-}
-
-void RequireFitted(const Report& report, std::string_view what) {
-  if (!report.failed()) return;
-  throw InvalidArgument(fmt::format("a fit that failed has no curve and no residual for {}: {}",
-                                    what, report.fit.solver.message));
-}
-
-namespace {
 
 /// Sentences by the code of a finding; of one that has a kind the row "code.kind" goes before that
 /// of its code. Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a
@@ -122,8 +59,8 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
      "the force reads {limit:force} in {share%} of the samples, to the last digit: the sensor is "
-     "at its "
-     "limit, and Tc is no less"},
+     "at "
+     "its limit, and Tc is no less"},
     {"not_identifiable.few_places",
      "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
      "often"},
@@ -187,6 +124,70 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
 }
 
 }  // namespace
+
+std::string NameOf(std::span<const std::string> files) {
+  if (files.empty()) return "";
+  std::string name = std::filesystem::path(files.front()).filename().string();
+  if (files.size() > 1) name += fmt::format(" and {} more", files.size() - 1);
+  return name;
+}
+
+bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
+
+std::string_view VerdictWord(const Report& report) {
+  if (report.failed()) return "failed";
+  if (!report.fit.converged) return "not converged";
+  return IsJudged(report) ? Name(report.fit.adequacy.verdict) : "not judged";
+}
+
+std::string_view JudgementOf(std::string_view verdict) {
+  if (verdict == "adequate") return kGood;
+  return verdict == "doubtful" || verdict == "not judged" ? kPoor : kBad;
+}
+
+std::string_view JudgementOf(const ParameterEstimate& estimate) {
+  const Shown shown = WhatIsShown(estimate);
+  if (shown.is_held) return kPlain;
+  if (!shown.value && !shown.lower && !shown.upper) return kBad;
+  return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
+}
+
+Shown WhatIsShown(const ParameterEstimate& estimate) {
+  const std::optional<double>& lower = estimate.lower95;
+  const std::optional<double>& upper = estimate.upper95;
+  if (estimate.status == ParameterStatus::kFixed) return {estimate.value, {}, {}, true};
+  if (estimate.identifiability == Identifiability::kBoundedBelow) return {{}, lower, {}};
+  if (!estimate.is_known()) return {};
+  if (estimate.status == ParameterStatus::kAtLowerBound) return {{}, {}, upper};
+  if (estimate.status == ParameterStatus::kAtUpperBound && !upper) return {{}, lower, {}};
+  return {estimate.value, lower, upper};
+}
+
+std::string ValueText(const ParameterEstimate& estimate) {
+  const auto [value, lower, upper, is_held] = WhatIsShown(estimate);
+  const std::string text = QuantityWithInterval(value, lower, upper, estimate.unit);
+  return text.empty() ? "not determined" : is_held ? text + " (held)" : text;
+}
+
+std::string MisfitShare(double over_half_gap) {
+  return fmt::format("{} the half gap",
+                     over_half_gap >= 1 ? "more than" : PercentText(over_half_gap) + " of");
+}
+
+std::string NextStatement(const NextStep& next) {
+  const std::string before = PercentText(next.misfit_before);
+  const std::string change = next.is_over_amplitude
+                                 ? fmt::format("{} of the half gap → {} of the amplitude", before,
+                                               PercentText(next.misfit_after))
+                                 : fmt::format("{} → {}", before, MisfitShare(next.misfit_after));
+  return fmt::format("{}{}misfit {} (tried)", next.text, next.text.empty() ? "" : ", ", change);
+}
+
+void RequireFitted(const Report& report, std::string_view what) {
+  if (!report.failed()) return;
+  throw InvalidArgument(fmt::format("a fit that failed has no curve and no residual for {}: {}",
+                                    what, report.fit.solver.message));
+}
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;

@@ -68,15 +68,11 @@ struct Shown {
 
   /// True for an estimate with its interval.
   [[nodiscard]] bool is_estimate() const { return value && !is_held; }
-  [[nodiscard]] bool is_limit() const { return !value && (lower || upper); }
 };
 Shown WhatIsShown(const ParameterEstimate& estimate);
 
 /// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
 std::string ValueText(const ParameterEstimate& estimate);
-
-/// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
-std::string PercentText(double share);
 
 /// @param over_half_gap  as Adequacy::misfit_over_half_gap
 /// @returns "5.6 % of the half gap", "more than the half gap"
@@ -87,8 +83,7 @@ std::string NextStatement(const NextStep& next);
 
 /// Describes a finding in at most some twenty words, without an end of line, naming no parameter:
 /// what was found and, where something can be done, what to do; the code alone where it is unknown.
-std::string Sentence(const Finding& finding, const FitResult& fit,
-                     const Units& units = kUnitsOfForce);
+std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units = {});
 
 /// Returns the same behind the names of its parameters.
 std::string WarningText(const Finding& finding, const Report& report);

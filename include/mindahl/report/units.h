@@ -17,16 +17,9 @@ struct Units {
   std::string_view excitation = "m";  ///< the other one: of reversals
 };
 
-inline constexpr Units kUnitsOfForce{};
-inline constexpr Units kUnitsOfTorque{.force = "N m",
-                                      .displacement = "rad",
-                                      .stiffness = "N m/rad",
-                                      .response = "N m",
-                                      .excitation = "rad"};
-
 /// Returns the units of a record.
-inline const Units& UnitsOf(bool is_torsional) {
-  return is_torsional ? kUnitsOfTorque : kUnitsOfForce;
+constexpr Units UnitsOf(bool is_torsional) {
+  return is_torsional ? Units{"N m", "rad", "N m/rad", "N m", "rad"} : Units();
 }
 
 /// Returns the unit that a quantity of a torque has where that of a force has `unit`: N is N m, m
