@@ -36,8 +36,7 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
                               ToPage(report, console.command_line));
     };
   }
-  const std::vector<BatchEntry> fits =
-      FitFiles(request, options.strict, options.threads, write_page);
+  const auto fits = FitFiles(request, options.strict, options.threads, write_page);
   for (const BatchEntry& fit : fits) {
     Say("batch: note", fit.notes, console);
     if (!fit.fault.empty()) {
@@ -46,9 +45,7 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
   }
   const request::BatchAnswer answer = request::AnswerOf(fits, options.output, console.command_line);
   io::WriteFileAtomically(options.output, answer.table);
-  if (!directory.empty()) {
-    io::WriteFileAtomically(directory / "index.html", answer.index);
-  }
+  if (!directory.empty()) io::WriteFileAtomically(directory / "index.html", answer.index);
   WriteAnswer(console, answer.json, answer.text);
   console.exit_status = std::ranges::all_of(fits, &BatchEntry::done) ? kDone : kNotEstablished;
 }

@@ -36,7 +36,6 @@ void RunContact(const ContactOptions& given, Console& console) {
   Say("contact: warning", contact::DoubtsAbout(given.known), console);
   Json rows = quantities;
   rows.update(parameters);
-  constexpr int kEveryDigit = 17;
   // G* is said wherever it is used: many texts write it for the inverse.
   WriteAnswer(console,
               report::Document("mindahl.contact/1",
@@ -44,7 +43,7 @@ void RunContact(const ContactOptions& given, Console& console) {
                                 {"compliance_unit", "1/Pa"},
                                 {"contact", std::move(quantities)},
                                 {"parameters", std::move(parameters)}}),
-              report::TableText(rows, kEveryDigit));
+              report::TableText(rows, /*digits=*/17));
 }
 
 }  // namespace

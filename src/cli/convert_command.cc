@@ -107,8 +107,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
   if (!request.fit.empty()) {
     const Json fit = ReadFit(request.fit, request.columns);
     TakeFit(fit, request);
-    const bool has_load = target.form == convert::Form::kSpring && !given.law.slip_force;
-    if (has_load) TakeLoad(fit, request);
+    if (target.form == convert::Form::kSpring && !given.law.slip_force) TakeLoad(fit, request);
     if (!given.amplitude && report::At(fit, "/parameters/load_exponent").is_object() &&
         report::At(fit, "/input/files").size() > 1) {
       Say("convert: note",
@@ -134,8 +133,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
   const double amplitude = Require(request.amplitude, "--amplitude");
   request.options.amplitude = amplitude;
   const double tolerance = request.options.tolerance;
-  const convert::Conversion made =
-      convert::Convert({&ModelOf(request), law}, target, request.options);
+  const auto made = convert::Convert({&ModelOf(request), law}, target, request.options);
   Json parameters = Json::object();
   for (const auto& [row, value] : made.parameters) {
     parameters[row.name] = {{"value", value}, {"unit", row.unit}, {"meaning", row.meaning}};
@@ -148,18 +146,17 @@ void RunConvert(const ConvertOptions& given, Console& console) {
     }
   }
   const convert::LoopError& error = made.at_amplitude;
-  std::string error_text = fmt::format(
+  std::string accuracy = fmt::format(
       "at {:.6g} m the force is within {} of T*, the energy {}", amplitude, Percent(error.force),
       std::isfinite(error.energy) ? "off by " + Percent(error.energy)
                                   : "lost where the contact loses none");
   if (!left_out.empty()) {
-    error_text +=
-        fmt::format(", of the law alone: without the fit's {}", fmt::join(left_out, ", "));
+    accuracy += fmt::format(", of the law alone: without the fit's {}", fmt::join(left_out, ", "));
   }
   const auto& within = made.within;
   constexpr int kDigits = 8;
   const std::string text =
-      fmt::format("{}; {}\n\n{}{}\n{}\n", target.title, error_text,
+      fmt::format("{}; {}\n\n{}{}\n{}\n", target.title, accuracy,
                   report::TableText(parameters, kDigits), report::TableText(elements, kDigits),
                   within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
                                        Percent(tolerance), within->first, within->second)
@@ -185,7 +182,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
     }
     // Lines for mindahl simulate are command line options, which cannot contain comments.
     const bool has_comments = !made.input_lines.front().starts_with("--");
-    WriteText(fmt::format("{}{}\n", has_comments ? "# " + error_text + '\n' : "",
+    WriteText(fmt::format("{}{}\n", has_comments ? "# " + accuracy + '\n' : "",
                           fmt::join(made.input_lines, "\n")),
               lines_path, console);
   }

@@ -70,17 +70,16 @@ void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
 
 /// Reads fit, a number, or a number with its standard uncertainty.
 void ReadRig(const std::string& text, identification::FitOptions& fit) {
-  constexpr const char* kName = "rig_stiffness";
+  constexpr const char* kRig = "rig_stiffness";
   if (text == "fit") {
-    fit.terms.emplace_back(kName);
+    fit.terms.emplace_back(kRig);
     return;
   }
   const UncertainValue stated = ParseUncertainValue(text, "--rig-stiffness", "N/m");
   RequirePositive("--rig-stiffness [N/m]", stated.value);
-  if (stated.standard_error == 0)
-    return GiveOnce("--rig-stiffness", kName, stated.value, fit.fixed);
-  fit.terms.emplace_back(kName);
-  fit.priors[kName] = {stated.value, stated.standard_error};
+  if (stated.standard_error == 0) return GiveOnce("--rig-stiffness", kRig, stated.value, fit.fixed);
+  fit.terms.emplace_back(kRig);
+  fit.priors[kRig] = {stated.value, stated.standard_error};
 }
 
 /// Reads "cycles=2:9" and the like, of `--select`.
@@ -284,7 +283,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
         },
         help, type);
   };
-  const auto parse_prior = [](std::string_view text, std::string_view unit) {
+  const auto to_prior = [](std::string_view text, std::string_view unit) {
     const UncertainValue prior = ParseUncertainValue(text, "--prior", unit);
     using identification::Prior;
     return prior.standard_error > 0 ? std::optional(Prior{prior.value, prior.standard_error})
@@ -296,8 +295,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   "start the search from a value instead of the data's");
   add_assignments("--bound", fit.bounds, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2", &ParseInterval,
                   "keep a parameter between two values");
-  add_assignments("--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
-                  parse_prior,
+  add_assignments("--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%", to_prior,
                   "prior value and standard uncertainty of a parameter, in its unit [SI]");
   group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
   group.AddQuantity("--force-noise", fit.force_noise,

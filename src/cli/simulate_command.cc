@@ -71,9 +71,8 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
 void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
-  tradeoff::Approximation approximation{options.model, options.method, {}};
-  approximation.resolution.steps =
-      options.steps.value_or(methods::FindMethod(options.method)->default_steps);
+  const auto steps = options.steps.value_or(methods::FindMethod(options.method)->default_steps);
+  const tradeoff::Approximation approximation{options.model, options.method, {.steps = steps}};
   const FrictionModel* model = models::FindFrictionModel(options.model);
   const models::BranchLaw law = ResolveLaw(options.law, options.model,
                                            model == nullptr ? std::nullopt : model->shape_exponent);

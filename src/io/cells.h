@@ -13,9 +13,8 @@ constexpr bool IsDigit(char character) { return character >= '0' && character <=
 constexpr bool IsCapital(char character) { return character >= 'A' && character <= 'Z'; }
 constexpr bool IsSmall(char character) { return character >= 'a' && character <= 'z'; }
 /// True for a letter, and for any part of one that is not of ASCII.
-constexpr bool IsLetter(char character) {
-  return IsCapital(character) || IsSmall(character) ||
-         static_cast<unsigned char>(character) >= 0x80;
+constexpr bool IsLetter(char letter) {
+  return IsCapital(letter) || IsSmall(letter) || static_cast<unsigned char>(letter) >= 0x80;
 }
 
 /// True for a line that holds no row: blank, or a comment that begins with '#', where that is no

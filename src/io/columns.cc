@@ -219,7 +219,7 @@ void RequireNoFactor(Column& column) {
 
 /// Describes how numbers behave.
 void ObserveValues(Column& column) {
-  constexpr double kGoodPart = 0.4;
+  constexpr double kPart = 0.4;
   double least = std::numeric_limits<double>::infinity();
   double greatest = -least;
   double rise = 0.0;
@@ -237,8 +237,7 @@ void ObserveValues(Column& column) {
   column.least = least;
   column.greatest = greatest;
   column.trend = int{rise > 0 && fall == 0} - int{fall > 0 && rise == 0};
-  column.goes_to_and_fro =
-      greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least);
+  column.goes_to_and_fro = greatest > least && std::min(rise, fall) > kPart * (greatest - least);
 }
 
 }  // namespace

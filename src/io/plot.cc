@@ -274,8 +274,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   for (const double tic : y_axis.tics) {
     x_axis.from_pixel = std::max(x_axis.from_pixel, 14 + WidthOf(TicLabel(tic)));
   }
-  Drawing drawing{.elements = DrawAxes(panel, x_axis, y_axis),
-                  .height = y_axis.from_pixel + kBelow};
+  Drawing drawing{DrawAxes(panel, x_axis, y_axis), y_axis.from_pixel + kBelow};
   // The legend is in rows below.
   double entry = width;
   int place = -1;  // of a series in the order of colours
@@ -309,8 +308,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
 
 std::string HtmlText(std::string_view text) {
   // The conversion omits bytes that are not valid UTF-8.
-  const std::string valid =
-      boost::locale::conv::utf_to_utf<char>(text.data(), text.data() + text.size());
+  const std::string valid = boost::locale::conv::utf_to_utf<char>(std::string(text));
   std::string escaped;
   for (const char& character : valid) {
     const auto byte = static_cast<unsigned char>(character);

@@ -37,8 +37,7 @@ void RequireNoSignBit(const CsvTable& table, const Quantity& quantity) {
 }  // namespace
 
 std::string LeftOutRows::InWords() const {
-  return fmt::format("{} row{} left out, the first: {}", count, count == 1 ? " is" : "s are",
-                     fault);
+  return fmt::format("{} row{} left out, the first: {}", count, count > 1 ? "s are" : " is", fault);
 }
 
 /// Turns the rows of tables into samples of a record.

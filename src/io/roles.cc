@@ -69,7 +69,7 @@ std::string UnitOfStamp(double number) {
 
 /// Returns the column of a name, or of a number from 1 behind '#'.
 /// @param where  it stands, for the refusal of one that there is not
-std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::string& where,
+std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_view where,
                      Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
   if (number >= 1 && number <= table.columns.size()) return *number - 1;
@@ -79,8 +79,7 @@ std::size_t ColumnIn(std::string_view name, const CsvTable& table, const std::st
 }
 
 /// Reads a sum of products, each of numbers and at most one column.
-void ReadSum(std::string_view rest, const CsvTable& table, const std::string& where,
-             Quantity& sum) {
+void ReadSum(std::string_view rest, const CsvTable& table, std::string_view where, Quantity& sum) {
   constexpr std::string_view kOperators = "+-*";
   const auto require = [&](bool is_sum) {
     if (is_sum) return;

@@ -18,6 +18,7 @@ namespace {
 using Strings = std::vector<std::string>;
 
 constexpr double kBroken = std::numeric_limits<double>::infinity();
+constexpr const char* kUnclosed = "a quotation mark opened here is never closed in its line";
 
 /// Takes the first line off a text, without its end.
 std::string_view TakeLine(std::string_view& text) {
@@ -240,8 +241,7 @@ class Reading {
     }
     for (const Row& row : std::span(rows_).first(data_)) {
       if (row.is_comment || !row.cells.back().starts_with('"')) continue;
-      Refuse("{}:{}: a quotation mark opened here is never closed in its line", table.file,
-             row.line);
+      Refuse("{}:{}: {}", table.file, row.line, kUnclosed);
     }
     if (header < data_) {
       table.header_line = rows_[header].line;
@@ -406,9 +406,7 @@ void TableReader::ReadRow(std::string_view row) {
   // A column that is not used may be absent.
   while (column < is_wanted.size() && !is_wanted[column]) ++column;
   if (cells.is_open()) {
-    Break(fmt::format("{}:{}: a quotation mark opened here is never closed in its line",
-                      table_.file, line_),
-          0);
+    Break(fmt::format("{}:{}: {}", table_.file, line_, kUnclosed), 0);
   } else if (excess > 0) {
     Break(At(excess, "one cell too many: remove it, or commas within numbers"), 0);
   } else if (column < is_wanted.size()) {

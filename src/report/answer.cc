@@ -364,9 +364,7 @@ std::string MisfitStatement(const Report& report) {
     return rms + " rms, like noise: the law describes the record";
   }
   std::string text = Quantity(adequacy.misfit, unit, 3);
-  if (adequacy.misfit_over_half_gap) {
-    text += ", " + MisfitShare(*adequacy.misfit_over_half_gap);
-  }
+  if (adequacy.misfit_over_half_gap) text += ", " + MisfitShare(*adequacy.misfit_over_half_gap);
   constexpr double kMostOfIt = 0.5;  // is the same at one place of every stroke
   if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {

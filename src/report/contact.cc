@@ -91,7 +91,7 @@ constexpr std::array kQuantities = {
 
 /// False where a loop that slides measures another force in that direction: then the asymmetry and
 /// the offset of the force stand for each other.
-bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
+bool IsThatOfThePlateau(const FitResult& fit, double sense, double force) {
   const RecordFit& record = fit.WidestRecord();
   const loop::LoopFacts& facts = record.facts;
   if (!loop::Slides(facts) || facts.cycles.empty()) return true;
@@ -101,8 +101,7 @@ bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
   const ParameterEstimate* zero = fit.FindOf(record, "force_offset");
   if (zero != nullptr) centre -= fit.force_sense * zero->value;
   const double plateau = *facts.half_gap + sense * centre;
-  return std::abs(slip_force - plateau) <
-         identification::Thresholds().off_plateau * *facts.half_gap;
+  return std::abs(force - plateau) < identification::Thresholds().off_plateau * *facts.half_gap;
 }
 
 /// Returns a quantity with the force at which the contact slips in one direction, Tc(1 ± A).
@@ -147,15 +146,13 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     quantities.push_back(SlipForce(fit, {"slip_force_positive", "Tc up", "N", "slip_force"}, 1));
     quantities.push_back(SlipForce(fit, {"slip_force_negative", "down", "N", "slip_force"}, -1));
   }
-  ContactQuantity& gross_slip =
-      quantities.emplace_back("gross_slip_displacement", "δc", "m", "alpha");
+  ContactQuantity& slip = quantities.emplace_back("gross_slip_displacement", "δc", "m", "alpha");
   const ParameterEstimate& shape = *fit.Find("alpha");
   const double alpha = shape.status == ParameterStatus::kFixed ? shape.value : kThird;
   // It is that of Mindlin's contact, and slip is never complete where α is 1 or more.
   if (sigma.is_known() && slip_force.is_known() && alpha < 1 &&
       !TestAlpha(fit).is_rejected.value_or(false)) {
-    Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1},
-         gross_slip);
+    Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1}, slip);
   }
   ContactQuantity& load = quantities.emplace_back("normal_load", "N", "N");
   if (!known.normal_load) return quantities;

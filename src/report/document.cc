@@ -156,14 +156,6 @@ Json TermsJson(const Report& report) {
   return {{"mode", mode}, {"considered", std::move(considered)}, {"added", std::move(added)}};
 }
 
-Json NextJson(const std::optional<NextStep>& next) {
-  if (!next) return nullptr;
-  return {{"text", next->text},
-          {"options", next->options},
-          {"misfit_before", next->misfit_before},
-          {"misfit_after", next->misfit_after}};
-}
-
 /// Reasons of nulls by the path of a value or of an object that has it.
 using Reasons = std::map<std::string, std::string>;
 
@@ -215,6 +207,7 @@ Json DocumentOf(const Report& report) {
   const FitResult& fit = report.fit;
   const identification::ResidualStatistics& residuals = fit.residuals;
   const io::RecordFile& first = report.records.front();
+  const std::optional<NextStep>& next = report.next;
   std::size_t cycles = 0;
   std::size_t reversals = 0;
   for (const RecordFit& record : fit.records) {
@@ -259,7 +252,11 @@ Json DocumentOf(const Report& report) {
         {"sigma_over_hertz_mindlin", NumberOrNull(report.ValueOf("sigma_over_hertz_mindlin"))}}},
       {"terms", TermsJson(report)},
       {"compared", ComparedModels(report)},
-      {"next", NextJson(report.next)},
+      {"next", next ? Json{{"text", next->text},
+                           {"options", next->options},
+                           {"misfit_before", next->misfit_before},
+                           {"misfit_after", next->misfit_after}}
+                    : Json()},
       {"confidence", fit.confidence},
       {"warnings", ListOf(report.warnings, [](const Warning& warning) -> Json {
          return {{"code", warning.code}, {"message", warning.message}};

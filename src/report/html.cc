@@ -76,9 +76,8 @@ std::string TableHtml(std::string_view caption, const std::vector<std::string>& 
                 : fmt::format("><a href=\"{}\">{}</a></th>", line.address, HtmlText(line.head));
     for (const std::string& cell : line.cells) {
       // Letters break anywhere, numbers nowhere.
-      const bool is_number = cell.find_first_of("0123456789") == 0;
-      html +=
-          fmt::format("<td class=\"{}\">{}</td>", is_number ? "number" : "words", HtmlText(cell));
+      const char* const kind = cell.find_first_of("0123456789") == 0 ? "number" : "words";
+      html += fmt::format("<td class=\"{}\">{}</td>", kind, HtmlText(cell));
     }
     html += "</tr>\n";
   }

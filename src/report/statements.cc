@@ -126,7 +126,6 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
 }  // namespace
 
 std::string NameOf(std::span<const std::string> files) {
-  if (files.empty()) return "";
   std::string name = std::filesystem::path(files.front()).filename().string();
   if (files.size() > 1) name += fmt::format(" and {} more", files.size() - 1);
   return name;
@@ -193,8 +192,7 @@ std::string Sentence(const Finding& finding, const FitResult& fit, const Units& 
   const std::string_view code = finding.code;
   std::string_view text = code;
   for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind)}) {
-    const auto row =
-        std::ranges::find(kSentences, key, [](const auto& each) { return each.first; });
+    const auto row = std::ranges::find(kSentences, key, [](const auto& of) { return of.first; });
     if (row != kSentences.end()) text = row->second;
   }
   std::string sentence;

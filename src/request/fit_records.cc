@@ -57,18 +57,17 @@ void RequireLoops(const std::vector<RecordFile>& inputs) {
       const double half = *greatest / 2 - *least / 2;
       const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
       const auto row = static_cast<std::size_t>((half == 0 ? least : widest) - values->begin());
-      const std::string place =
-          fmt::format("{}:{}:{}", input.name, input.LineOf(row), column->index);
+      const std::string at = fmt::format("{}:{}:{}", input.name, input.LineOf(row), column->index);
       if (half == 0) {
         Refuse(
             "{}: the {} never changes, it is {} {} in every row: choose another column with --{}",
-            place, what, *least, unit, what);
+            at, what, *least, unit, what);
       }
       if (half >= kSmallest && half <= kLargest) continue;
       Refuse(
           "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: choose other "
           "units",
-          place, what, half, unit);
+          at, what, half, unit);
     }
   }
 }
@@ -96,9 +95,7 @@ void KeepTests(const FitRequest& request, FitOptions& options, report::ReportInp
     io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
-  if (all_cycled && !options.initial_state) {
-    options.initial_state = models::InitialState::kSteady;
-  }
+  if (all_cycled && !options.initial_state) options.initial_state = models::InitialState::kSteady;
 }
 
 /// Notes each file whose column of the normal load has another mean than the load that is given.
@@ -136,9 +133,8 @@ TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     FitResult other = identification::Fit(records, of_other);
-    const auto& confirmed = other.law_choice;
-    const bool is_preferred =
-        !confirmed || (confirmed->decided() && !confirmed->prefers_alternative());
+    const auto& choice = other.law_choice;
+    const bool is_preferred = !choice || (choice->decided() && !choice->prefers_alternative());
     if (other.converged && is_preferred) {
       asked.options = std::move(of_other);
       asked.fit = std::move(other);
@@ -361,12 +357,10 @@ std::string WhyNotEstablished(const FitResult& fit, Strictness strictness) {
     return "not established: the model is not adequate";
   }
   for (const ParameterEstimate& estimate : fit.parameters) {
-    const bool is_established =
-        estimate.status == ParameterStatus::kFixed ||
-        (is_strict ? estimate.identifiability == Identifiability::kIdentifiable
-                   : estimate.is_known());
-    if (!is_established)
-      return fmt::format("not established: {} is not identifiable", estimate.name);
+    const bool suffices = estimate.status == ParameterStatus::kFixed ||
+                          (is_strict ? estimate.identifiability == Identifiability::kIdentifiable
+                                     : estimate.is_known());
+    if (!suffices) return fmt::format("not established: {} is not identifiable", estimate.name);
   }
   return "";
 }

@@ -31,29 +31,6 @@ const identification::TermGroup* GroupOf(const Term& term) {
   return group == groups.end() ? nullptr : &*group;
 }
 
-/// Fits what a term that is held at a value has no meaning without, as a ripple's factors.
-void AddCompanionsOfFixed(FitOptions& fit) {
-  for (const auto& [name, value] : fit.fixed) {
-    const Term* term = identification::FindTerm(name);
-    if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
-    if (const auto* group = GroupOf(*term)) AddGroup(*group, fit);
-  }
-}
-
-/// Applies --terms: groups of terms, and columns.
-void ApplyTerms(const FitRequest& request, FitOptions& fit) {
-  const bool is_of_force = fit.response() == loop::Channel::kForce;
-  for (const std::string& name : request.terms) {
-    if (!is_of_force) {
-      fit.terms.push_back(name);
-    } else if (const auto* group = identification::FindTermGroup(name)) {
-      AddGroup(*group, fit);
-    } else {
-      fit.covariates.push_back(name);
-    }
-  }
-}
-
 /// A start, a bound or a prior of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
@@ -71,8 +48,8 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
 FitOptions MakeFitOptions(const FitRequest& request) {
   FitOptions fit = request.fit;
   if (fit.model == nullptr) fit.model = FitOptions().model;
-  if (fit.response() == loop::Channel::kDisplacement &&
-      (request.chooses_terms || request.compare)) {
+  const bool is_of_force = fit.response() == loop::Channel::kForce;
+  if (!is_of_force && (request.chooses_terms || request.compare)) {
     Refuse(
         "{} cannot be combined with --noise-in displacement: it needs a fit of the "
         "force; leave one of the two out",
@@ -81,8 +58,21 @@ FitOptions MakeFitOptions(const FitRequest& request) {
   for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
-  ApplyTerms(request, fit);
-  AddCompanionsOfFixed(fit);
+  for (const std::string& name : request.terms) {
+    if (!is_of_force) {
+      fit.terms.push_back(name);
+    } else if (const auto* group = identification::FindTermGroup(name)) {
+      AddGroup(*group, fit);
+    } else {
+      fit.covariates.push_back(name);
+    }
+  }
+  // A term that is held at a value has no meaning without others, as a ripple without its factors.
+  for (const auto& [name, value] : fit.fixed) {
+    const Term* term = identification::FindTerm(name);
+    if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
+    if (const auto* group = GroupOf(*term)) AddGroup(*group, fit);
+  }
   Validate(fit);
   for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
