@@ -27,8 +27,7 @@ constexpr auto kCommands = std::to_array<Command>({{"fit", AddFitCommand},
                                                    {"track", AddTrackCommand},
                                                    {"batch", AddBatchCommand}});
 
-/// TOML whose keys are options of the command being run. A key that is none is an error: it is a
-/// misspelling.
+/// TOML whose keys are options of the command being run. Another key is an error: a misspelling.
 class CommandConfig : public CLI::ConfigTOML {
  public:
   explicit CommandConfig(const CLI::App& app) : app_(app) {}

@@ -72,8 +72,7 @@ std::pair<CLI::App&, Options&> AddCommand(CLI::App& program, Console& console,
 /// @param names  with their dashes, in the order of the help
 void ShowFirst(CLI::App& command, std::vector<std::string> names);
 
-/// Adds options to one group of a command's help. A name without dashes stands for the words that
-/// are no options.
+/// Adds options to one group of a command's help. A name without dashes is that of other words.
 class OptionGroup {
  public:
   OptionGroup(CLI::App& command, std::string name) : command_(command), name_(std::move(name)) {}
@@ -208,8 +207,7 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
 /// @param what  "fit: note"
 void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console);
 
-/// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
-/// JSON goes there.
+/// Writes an answer as JSON where that is asked for, and as text unless the JSON goes there.
 void WriteAnswer(Console& console, std::string_view json, std::string_view text);
 
 /// Refuses a file that is given twice, by one name or by two: its samples would count twice.

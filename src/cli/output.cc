@@ -28,8 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// True of one file under one name or two; a device, a terminal or a pipe is none, as writing to it
-/// replaces nothing.
+/// True for one file under one name or two; writing to a device or a pipe replaces nothing.
 bool IsSameFile(const fs::path& first, const fs::path& second) {
   std::error_code error;
   return fs::equivalent(first, second, error) && fs::is_regular_file(first, error);

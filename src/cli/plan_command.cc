@@ -153,8 +153,7 @@ Plan MakePlan(const PlanOptions& options) {
   return plan;
 }
 
-/// Returns the standard error over the value, of a pure number as it is; empty beyond 1, where the
-/// bound determines little.
+/// Returns the standard error over the value, of a pure number as it is; empty beyond 1.
 std::optional<double> ErrorOf(const ExpectedFit& fit, std::string_view parameter) {
   const ParameterEstimate* estimate = fit.Find(parameter);
   if (!estimate->standard_error) return std::nullopt;

@@ -56,8 +56,7 @@ std::optional<Dimension> DimensionOf(std::string_view symbol) {
 
 bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
 
-/// Returns the words of a name between blanks, " in words ": runs of letters, cut where a small one
-/// is followed by a capital.
+/// Returns the words of a name between blanks, " in words ": runs of letters; "dispMm" is two.
 std::string WordsIn(std::string_view name) {
   std::string words = " ";
   for (std::size_t k = 0; k < name.size(); ++k) {

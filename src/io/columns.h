@@ -70,8 +70,7 @@ struct Column {
 /// @param below  the cell of the units row
 Column ReadName(std::string_view header, std::string_view below = {});
 
-/// True for the symbol of a unit usual in such files (mm, N, V, bar...), and for a word in
-/// brackets.
+/// True for the symbol of a unit usual in such files (mm, N, V, bar...) and a word in brackets.
 bool LooksLikeUnit(std::string_view cell);
 
 /// True if a quantity of that dimension may have the role.
@@ -80,9 +79,8 @@ bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 /// Stands for the unit of a coefficient, which has none.
 inline constexpr std::string_view kRatioUnit = "ratio";
 
-/// Describes how the values of columns behave. A friction without a unit beside a load is a ratio,
-/// and what is called a load beside a friction force, or a load of one sign beside a ratio, is the
-/// normal one.
+/// Describes how the values of columns behave. A friction without a unit beside a load is a ratio;
+/// a load beside a friction force, or of one sign beside a ratio, is the normal one.
 void Observe(std::vector<Column>& columns);
 
 }  // namespace mindahl::io

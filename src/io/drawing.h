@@ -9,8 +9,7 @@
 namespace mindahl::io {
 
 /// Returns the text that a page of HTML shows as it is, between tags or in quotes: & < > " ' are
-/// escaped; what is not UTF-8 is left out, and control characters but for the line feed become
-/// U+FFFD.
+/// escaped, what is not UTF-8 is left out, and control characters but line feeds become U+FFFD.
 std::string HtmlText(std::string_view text);
 
 /// The style of the elements of a drawing but for their colours, which a page and a file choose.

@@ -143,8 +143,7 @@ std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   return kept;
 }
 
-/// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
-/// one before.
+/// Returns points as "M1 2L3 4…", each as the shape that is given, unless it falls on the last one.
 std::string Points(const Values& x, const Values& y, std::string_view shape) {
   std::string path, last;
   for (std::size_t k = 0; k < x.size(); ++k) {

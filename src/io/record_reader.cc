@@ -275,8 +275,7 @@ struct RecordStream::State {
     Refuse("--with: a record that is read in pieces is of one file: join them before");
   }
 
-  /// Reads the rows by which the content of the columns is judged: what becomes of those at fault
-  /// is for Next() to say.
+  /// Reads the rows by which the content of the columns is judged; Next() judges the rows.
   const CsvTable& FirstRows() {
     reader.Read();
     Observe(reader.table().columns);

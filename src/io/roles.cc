@@ -17,8 +17,7 @@ namespace {
 
 constexpr std::array kPair = {Role::kDisplacement, Role::kForce};
 
-/// Evidence of a unit, which counts more than a word; and of numbers that go to and fro, more
-/// still.
+/// Evidence of a unit, which counts more than a word; and, more still, of going to and fro.
 constexpr int kUnit = 100;
 constexpr int kMoving = 1000;
 
@@ -293,8 +292,7 @@ class RoleAssigner {
     }
   }
 
-  /// Gives what no name or unit decides to the columns of numbers that are left, if they are as
-  /// many.
+  /// Gives roles that no name or unit decides to the columns that are left, if they are as many.
   void TakeLeft() {
     std::vector<Role> missing(kPair.begin(), kPair.end());
     std::erase_if(missing, [&](Role role) { return !IsMissing(role); });

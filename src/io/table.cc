@@ -86,8 +86,7 @@ bool IsUnitsRow(std::span<const std::string> cells) {
   return units > 0 && 2 * units + std::ranges::count(cells, std::string()) >= std::ssize(cells);
 }
 
-/// The first rows of a text under one delimiter and decimal mark, and how well it explains them as
-/// columns of numbers.
+/// The first rows of a text under one delimiter and decimal mark, and how well these explain them.
 class Reading {
  public:
   Reading(std::span<const Row> sampled, char delimiter, char decimal_mark)
@@ -182,8 +181,7 @@ class Reading {
     }
   }
 
-  /// Returns the cells of a row of text, one for each column of the data; nullopt when it is not
-  /// that.
+  /// Returns the cells of a row of text, one for each column of the data; nullopt of another row.
   std::optional<Strings> HeaderCells(const Row& row) const {
     const bool by_blanks = layout_.delimiter == kBlanks;
     const std::size_t numbers = row.Count(Cell::Kind::kNumber);

@@ -27,8 +27,7 @@ bool IsInadequate(const Report& report) {
   return IsJudged(report) && report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
 }
 
-/// True of a parameter of an inadequate model that is not known, or whose loads or units are mixed
-/// up.
+/// True for a parameter of an inadequate model, unless it is known and the input not in doubt.
 bool IsMoot(const Report& report, const ParameterEstimate& estimate) {
   return IsInadequate(report) && (!estimate.is_known() || !report.check.empty());
 }
@@ -89,8 +88,7 @@ class Writer {
     Add(std::move(label), fmt::format("{}", fmt::join(parts, ", ")), judgement);
   }
 
-  /// Returns why a parameter has no value, and takes note that it is said; "" where another line
-  /// says it, or nothing does.
+  /// Returns why a parameter has no value, and notes that it is said; "" if another line says it.
   std::string WhyNot(std::string_view parameter) {
     for (const Finding& finding : fit_.findings) {
       const bool names_it =

@@ -12,8 +12,7 @@
 // page.cc, these are the only files that write markup.
 namespace mindahl::report {
 
-/// Returns a page, self-contained: it may load nothing, by a policy for the browser, and has no
-/// script.
+/// Returns a page, self-contained: a policy for the browser forbids loading; there is no script.
 /// @param body  the parts below, in their order
 std::string PageHtml(std::string_view title, std::string_view body);
 

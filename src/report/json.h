@@ -43,8 +43,8 @@ Json ListOf(const Rows& rows, Make make) {
   return list;
 }
 
-/// Returns a document as the program writes it, with the end of line. A file name need not be
-/// UTF-8; JSON must.
+/// Returns a document as the program writes it, with the end of line; what is not UTF-8 is
+/// replaced.
 inline std::string Dump(const Json& json) {
   return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
 }

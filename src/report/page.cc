@@ -48,9 +48,8 @@ std::string NextHtml(const Report& report, std::string_view command) {
                                  io::HtmlText(report.next->options)));
 }
 
-/// Returns friction (the slip force without a load), σ and α as bars with their intervals, none
-/// that has no value, and 1/3 as a mark of α. One is green only of what may be quoted. "" without
-/// any.
+/// Returns friction (the slip force without a load), σ and α as bars with their intervals, and 1/3
+/// as a mark of α; no bar of what has no value. One is green only of what may be quoted.
 std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;

@@ -22,9 +22,8 @@ std::string PercentText(double share) {
   return fmt::format("{} %", Quantity(100 * share, "-", 2));
 }
 
-/// Sentences by the code of a finding; of one that has a kind the row "code.kind" goes before that
-/// of its code. Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a
-/// unit.
+/// Sentences by the code of a finding; a row "code.kind" goes before that of its code. Numbers of
+/// the finding stand in braces: {count}, {share%}, in a unit {gate:excitation}.
 constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::string_view>>({
     // about the record
     {"reversals_uncertain",

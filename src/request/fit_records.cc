@@ -265,8 +265,7 @@ bool TryFit(const FitRequest& request, std::span<const Record> records, const Fi
 }
 
 /// Fits the displacement in place of the force where an encoder reads it in few steps, and returns
-/// that where it leaves no more than these and flicker of a count: the noise is then where the
-/// steps are.
+/// that where it leaves no more than these and flicker of a count: they are then the noise.
 std::optional<report::NextStep> TryNoiseInDisplacement(const FitRequest& request,
                                                        std::span<const Record> records,
                                                        const FitResult& fit, FitResult& found) {

@@ -8,8 +8,7 @@ namespace mindahl::io {
 
 /// Writes a whole file so that a reader finds the old content or the new, never a part: to a
 /// temporary name in the same directory, then by renaming. On failure nothing is left behind and an
-/// existing file is untouched; a signal that ends the program may leave the temporary file, whose
-/// name begins with a dot.
+/// existing file is untouched; a signal that ends the program may leave the temporary ".…" file.
 ///
 /// A new file gets the permissions of the umask, an existing one keeps its own, and a symbolic link
 /// stays a link. What cannot be renamed over (a device, a pipe, anything below /dev or /proc, as
@@ -33,9 +32,8 @@ class AppendedFile {
   /// @throws InputError likewise, as where the disk is full
   void Append(std::string_view block);
 
-  /// Closes the file once all of it is on the disk. What was appended before that survives the end
-  /// of the program, and of the machine only what the system has written by then, within half a
-  /// minute as a rule.
+  /// Closes the file once all of it is on the disk. What was appended before survives the end of
+  /// the program, and of the machine only if the system has written it, in half a minute as a rule.
   /// @throws InputError likewise
   void Finish();
 

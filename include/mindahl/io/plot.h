@@ -52,8 +52,7 @@ void RequirePlotName(const std::filesystem::path& path);
 /// Draws a plot into an SVG or PNG file, by the extension of its name, atomically.
 ///
 /// Labels are plain UTF-8 text: nothing in them is markup. Of a series of more than 20 000 points,
-/// runs of consecutive points keep those with the least and greatest coordinates, in order: no peak
-/// is lost.
+/// runs of points keep those with the least and greatest coordinates, in order: no peak is lost.
 /// @throws InputError when the extension is another, the file cannot be written, or for PNG the
 ///   program rsvg-convert is not installed or fails
 /// @throws InvalidArgument naming the series when a value is not finite, or not > 0 on a

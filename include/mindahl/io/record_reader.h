@@ -41,8 +41,7 @@ struct ChosenColumn {
   explicit operator bool() const { return index > 0; }
 };
 
-/// Rows that were left out, as a column that is used has no number there, and the fault of the
-/// first.
+/// Rows that were left out, as a column that is used has no number there; the fault of the first.
 struct LeftOutRows {
   std::size_t count = 0;
   std::string fault = {};  ///< "file:line:column: …"
@@ -111,8 +110,7 @@ class RecordStream {
   /// Returns the columns, units, notes and the rows left out so far; without samples.
   [[nodiscard]] const RecordFile& layout() const;
 
-  /// Replaces the samples by the next, as many as a mebibyte holds, or as there are before a row
-  /// that is refused.
+  /// Replaces the samples by the next, of a mebibyte or up to a row that is refused.
   /// @returns false at the end of the file, when there are none
   /// @throws InputError naming file, line and column of such a row, and where the file cannot be
   ///   read
@@ -123,8 +121,8 @@ class RecordStream {
   std::shared_ptr<State> state_;
 };
 
-/// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very
-/// doubles of the file.
+/// Returns the displacements [m] or [rad] to impose, one a row, in order; SI units are kept
+/// exactly.
 /// @param column  by default the first, or, where that is another channel by its name, the one of a
 ///   recognised name; unit as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()

@@ -79,8 +79,7 @@ struct Report : ReportInput {
   [[nodiscard]] std::optional<double> ValueOf(std::string_view quantity) const;
 };
 
-/// Names the columns that a record is from, "displacement 'x [m]' (2), force 'F [N]' (3)"; "" where
-/// it is from none.
+/// Names the columns that a record is from, "displacement 'x [m]' (2), force 'F [N]' (3)"; or "".
 /// @param force_sense  −1: the file has the force with the opposite sign
 std::string ColumnsText(const io::RecordFile& file, int force_sense);
 
@@ -106,8 +105,7 @@ std::string ToJson(const Report& report);
 /// loop with its residual, and details below. It loads nothing and runs no script, follows the
 /// light or dark scheme of its reader, and prints. Of a fit that failed, why.
 ///
-/// Figures have at most 6000 points each, so that the size of a page, some hundred kilobytes, does
-/// not grow with the record.
+/// Figures have at most 6000 points each: a page has some hundred kilobytes, whatever the record.
 /// @param command  that makes it again, for a shell; "" where there was none
 std::string ToPage(const Report& report, std::string_view command = {});
 

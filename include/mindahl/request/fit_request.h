@@ -15,8 +15,7 @@ namespace mindahl::request {
 /// same rules and the same messages for the command line and for Python. Messages name the command
 /// line's options.
 
-/// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
-/// be.
+/// Holds the options of `fit` on records, model and contact, which docs/contract.md describes.
 struct FitRequest {
   std::vector<std::string> files{};
   io::RecordColumns columns{};
@@ -30,8 +29,7 @@ struct FitRequest {
   ContactOptions contact{};
 };
 
-/// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
-/// contradict each other
+/// @throws InvalidArgument or InputError naming options that break a rule or contradict each other
 identification::FitOptions MakeFitOptions(const FitRequest& request);
 
 /// Returns the options for fits of one cycle after the other: no covariates.
