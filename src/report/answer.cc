@@ -156,16 +156,15 @@ class Writer {
   void AddStiffness() {
     const ParameterEstimate& sigma = *fit_.Find("sigma");
     const contact::KnownContact& known = report_.known;
-    const std::pair<const char*, bool> materials[] = {
-        {"--youngs-modulus-1", known.body_1.youngs_modulus.has_value()},
-        {"--poisson-1", known.body_1.poisson_ratio.has_value()},
-        {"--youngs-modulus-2", known.body_2.youngs_modulus.has_value()},
-        {"--poisson-2", known.body_2.poisson_ratio.has_value()}};
     std::vector<std::string> missing;
-    for (const auto& [option, is_given] : materials) {
-      if (!is_given) missing.emplace_back(option);
+    for (const auto& [option, given] :
+         {std::pair("--youngs-modulus-1", &known.body_1.youngs_modulus),
+          {"--poisson-1", &known.body_1.poisson_ratio},
+          {"--youngs-modulus-2", &known.body_2.youngs_modulus},
+          {"--poisson-2", &known.body_2.poisson_ratio}}) {
+      if (!*given) missing.emplace_back(option);
     }
-    const bool is_started = !missing.empty() && missing.size() < std::size(materials);
+    const bool is_started = !missing.empty() && missing.size() < 4;  // some are given
     const bool needs_them =
         is_started && !known.tangential_compliance && !report_.is_torsional() && sigma.is_known();
     std::vector<std::string> remarks;

@@ -28,17 +28,16 @@ using report::Json;
 namespace {
 
 /// A quantity that repeats of a test have in common, by the names of its columns.
-struct Repeated {
+const struct Repeated {
   std::string name;
   std::string parameter;  // whose errors it has; "" of what is measured, which states none
   std::string_view unit;
-};
-const std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
-                              Repeated{"alpha", "alpha", "-"},
-                              Repeated{"slip_force", "slip_force", "N"},
-                              Repeated{"friction_coefficient", "slip_force", "-"},
-                              Repeated{"half_gap", "", "N"},
-                              Repeated{"energy_per_cycle", "", "J"}};
+} kRepeated[] = {{"sigma", "sigma", "N/m"},
+                 {"alpha", "alpha", "-"},
+                 {"slip_force", "slip_force", "N"},
+                 {"friction_coefficient", "slip_force", "-"},
+                 {"half_gap", "", "N"},
+                 {"energy_per_cycle", "", "J"}};
 
 /// Returns the row of a file in the table.
 /// @param fit  its JSON, null where it has none
@@ -155,24 +154,23 @@ std::string IndexPage(std::span<const BatchEntry> entries, std::string_view titl
 BatchEntry FitSource(const std::string& name, Strictness strictness,
                      const std::function<report::Report()>& fit) {
   BatchEntry entry{.file = name};
-  std::string& fault = entry.fault;
   try {
     const report::Report report = fit();
     entry.notes = report.notes;
     entry.fit = ToJson(report);
-    fault = WhyNotEstablished(report.fit, strictness);
-    entry.done = fault.empty();
+    entry.fault = WhyNotEstablished(report.fit, strictness);
+    entry.done = entry.fault.empty();
     entry.verdict = report::VerdictWord(report);
     for (const char* parameter : report::kLawParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
       if (estimate != nullptr) entry.parameters.push_back(report::ValueText(*estimate));
     }
   } catch (const InputError& error) {
-    fault = error.what();
+    entry.fault = error.what();
   } catch (const InvalidArgument& error) {
-    fault = fmt::format("{}: {}", name, error.what());
+    entry.fault = fmt::format("{}: {}", name, error.what());
   } catch (const std::bad_alloc&) {
-    fault = name + ": memory ran out";
+    entry.fault = name + ": memory ran out";
   }
   return entry;
 }
@@ -192,11 +190,8 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
       });
     }
   };
-  std::vector<std::future<void>> workers;
-  workers.reserve(threads);
-  for (std::size_t k = 0; k < threads; ++k) {
-    workers.push_back(std::async(work));  // here where no thread can be started
-  }
+  std::vector<std::future<void>> workers(threads);
+  for (auto& worker : workers) worker = std::async(work);  // here where no thread can be started
   for (std::future<void>& worker : workers) worker.get();
   return entries;
 }

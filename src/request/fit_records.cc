@@ -402,9 +402,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   KeepTests(request, options, made);
   std::vector<Record> records;
-  records.reserve(made.records.size());
   for (const RecordFile& input : made.records) records.push_back(input.record);
-
   if (request.compare) made.compared = identification::CompareModels(records, options);
   TermSelection asked = FitAsked(request, options, records);
   FitResult found;
