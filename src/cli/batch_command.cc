@@ -74,7 +74,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       "--report", options.report_directory,
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
       "DIR");
-  AddThreads(group, options.threads, "the results");
+  group.AddThreads(options.threads, "the results");
   AddStrict(command, options.strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});

@@ -150,6 +150,23 @@ class OptionGroup {
   CLI::Option* AddJson(Console& console) const {
     return Add("--json", console.json_path, "answer as JSON; - for standard output alone", "PATH");
   }
+  CLI::Option* AddThreads(std::size_t& threads, const std::string& unchanged) const {
+    const std::string help =
+        "number of worker threads (default: one per core); they do not change\n";
+    return Add("--threads", threads, help + unchanged)->check(CLI::Range(1, 1024).description(""));
+  }
+  /// Adds --path, a file with an imposed displacement, and --displacement, its column.
+  /// @returns the former
+  CLI::Option* AddPath(std::string& path, std::string& column) const {
+    CLI::Option* const file =
+        Add("--path", path, "CSV file with a displacement, any sequence", "FILE");
+    Add("--displacement", column,
+        "its column, by header name or number, with its unit, \"[um]\", if the\nheader has none; "
+        "default by its name, else the first",
+        "COL")
+        ->needs(file);
+    return file;
+  }
 
  private:
   CLI::Option* Grouped(CLI::Option* added, const std::string& type) const {
@@ -162,12 +179,6 @@ class OptionGroup {
 };
 
 inline constexpr const char* kPlainGroup = "Options";
-
-/// Adds --path, a file with an imposed displacement, and --displacement, its column.
-/// @returns the former
-CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column);
-
-void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
 
 // --- options that make a request: for a contact, for a law, and for a fit
 

@@ -138,25 +138,6 @@ void ShowFirst(CLI::App& command, std::vector<std::string> names) {
   command.formatter_fn(show);
 }
 
-CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column) {
-  CLI::Option* const added =
-      group.Add("--path", path, "CSV file with a displacement, any sequence", "FILE");
-  group
-      .Add("--displacement", column,
-           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
-           "none; default by its name, else the first",
-           "COL")
-      ->needs(added);
-  return added;
-}
-
-void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged) {
-  group
-      .Add("--threads", threads,
-           "number of worker threads (default: one per core); they do not change\n" + unchanged)
-      ->check(CLI::Range(1, 1024).description(""));
-}
-
 UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
                                    std::string_view unit) {
   std::string stated(text);

@@ -29,7 +29,6 @@ struct PlanOptions {
 
 struct Plan {
   Expectation expected = {};
-  WantedPrecision wanted = {};
   double slip = 0.0;                    // displacement [m] of λ = 1
   std::vector<ExpectedFit> loops = {};  // by their amplitudes
   Json reached = {};                    // null where nothing is wanted
@@ -104,7 +103,7 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 
 Plan MakePlan(const PlanOptions& options) {
   Plan plan;
-  plan.wanted = ParseWanted(options.want);
+  const WantedPrecision wanted = ParseWanted(options.want);
   Expectation& expected = plan.expected;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
   if (!options.record.empty()) {
@@ -127,16 +126,16 @@ Plan MakePlan(const PlanOptions& options) {
     protocol.amplitude = amplitude;
     plan.loops.push_back(identification::ExpectFit(expected, protocol));
   }
-  if (plan.wanted.empty()) return plan;
+  if (wanted.empty()) return plan;
   // Just short of slip the error of a sharp knee's Tc is many times that at slip: an amplitude that
   // reaches slip is to give the wanted precision even if it is smaller by the margin.
   const auto factor_of = [&](const ExpectedFit& fit) {
-    const double factor = identification::CyclesFactor(fit, plan.wanted);
+    const double factor = identification::CyclesFactor(fit, wanted);
     Protocol smaller = fit.protocol;
     smaller.amplitude /= kMargin;
     if (fit.protocol.amplitude < plan.slip) return factor;
-    return std::max(factor, identification::CyclesFactor(
-                                identification::ExpectFit(expected, smaller), plan.wanted));
+    return std::max(
+        factor, identification::CyclesFactor(identification::ExpectFit(expected, smaller), wanted));
   };
   std::optional<double> least;
   for (const ExpectedFit& fit : plan.loops) {
@@ -188,7 +187,7 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
       "  -: larger than the value. Slip begins at {:.4g} m. A fit often leaves slip_force open\n"
       "  where its error is above 0.07, alpha above 0.05.\n",
       report::TableText(ErrorRows(plan), kDigits), plan.slip);
-  if (plan.wanted.empty()) return text;
+  if (options.want.empty()) return text;
   return text + fmt::format("\nwanted: {} (amplitudes in m)\n{}", fmt::join(options.want, ", "),
                             report::TableText(Json::array({plan.reached}), kDigits));
 }
@@ -243,7 +242,7 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
   WriteAnswer(console, ToJson(plan), ToText(options, plan));
-  const bool fails = !plan.wanted.empty() && plan.reached["least_amplitude"].is_null();
+  const bool fails = !options.want.empty() && plan.reached["least_amplitude"].is_null();
   if (fails) console.exit_status = kNotEstablished;
 }
 

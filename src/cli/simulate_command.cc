@@ -125,7 +125,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   drive.AddShown("--frequency", options.excitation.frequency, "frequency [Hz]");
   drive.AddShown("--growth", options.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
-  CLI::Option* const path = AddPath(drive, options.path, options.displacement);
+  CLI::Option* const path = drive.AddPath(options.path, options.displacement);
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
     path->excludes(command.get_option(name));

@@ -393,7 +393,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   cycles.AddChoice("--broken-rows", options.fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "rows without a number in a needed column; skip counts them");
-  AddThreads(cycles, options.track.threads, "the table");
+  cycles.AddThreads(options.track.threads, "the table");
   const OptionGroup group(command, "Results");
   group.Add("--output", options.output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();

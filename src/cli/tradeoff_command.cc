@@ -154,7 +154,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                  &RunTradeoff);
   AddLawParameters(OptionGroup(command, "Parameters"), options.law);
   const OptionGroup group(command, "Excitation");
-  AddPath(group, options.path, options.column);
+  group.AddPath(options.path, options.column);
   group
       .AddQuantity("--tolerance", options.tolerance,
                    "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E",

@@ -164,9 +164,8 @@ std::string DrawSeries(const Values& x, const Values& y, PlotStyle style, std::s
   if (style == PlotStyle::kPoints) return draw("dots", Points(x, y, "h0"));
   if (style == PlotStyle::kArea) return draw("area", Points(x, y, "") + "Z");
   // A path of one point draws nothing.
-  std::string line = draw("line", Points(x, y, "") + "h0");
-  if (style == PlotStyle::kLine) return line;
-  return line + draw("marker", Points(x, y, "h0"));
+  const std::string line = draw("line", Points(x, y, "") + "h0");
+  return style == PlotStyle::kLine ? line : line + draw("marker", Points(x, y, "h0"));
 }
 
 /// Draws axes, grid, labels and marks.

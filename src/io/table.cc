@@ -126,14 +126,13 @@ class Reading {
 
   /// Finds the data and the header above them, which may be a comment.
   Layout Find(CsvTable& table) && {
-    const auto comments = std::ranges::count(rows_, true, &Row::is_comment);
-    const auto rows = std::span(rows_).subspan(static_cast<std::size_t>(comments));
-    if (rows.empty()) Refuse("{}: holds no data, only blank or '#' lines", table.file);
+    const bool has_rows = !rows_.empty() && !rows_.back().is_comment;
+    if (!has_rows) Refuse("{}: holds no data, only blank or '#' lines", table.file);
     if (columns_ == 0) {
       Refuse(
           "{}:{}: no row down to '{}' has numbers: expected columns of them, under an optional "
           "header, between tabs, ';', blanks, or commas where these are no decimal marks",
-          table.file, rows.back().line, ForMessage(rows.back().text));
+          table.file, rows_.back().line, ForMessage(rows_.back().text));
     }
     FindData(table);
     FindNames(table);
