@@ -93,8 +93,7 @@ Cell ReadCell(std::string_view text, char decimal_mark) {
   double value = 0.0;
   const char* const end = plain.data() + plain.size();
   const auto [stop, error] = std::from_chars(plain.data(), end, value);
-  // from_chars does not say on which side a number is out of range: too small if its exponent is <
-  // 0.
+  // from_chars does not say on which side a number is out of range: small by a negative exponent.
   const bool is_beyond = error == std::errc::result_out_of_range;
   const bool is_small = is_beyond && LowerCase(plain).find("e-") != plain.npos;
   if (stop == end && (!is_beyond || is_small)) {

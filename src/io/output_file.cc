@@ -29,7 +29,6 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const std::string plain = path.lexically_normal().string();
   const bool is_device = plain.starts_with("/dev/") || plain.starts_with("/proc/");
   const bool replaces = !is_device && (!is_old || std::filesystem::is_regular_file(old));
-  // A link stays one.
   const std::filesystem::path target = replaces && is_old ? std::filesystem::canonical(path) : path;
   static std::atomic<unsigned> counter = 0;
   const std::string name =

@@ -341,8 +341,6 @@ std::string CsvTable::Listing() const {
   return fmt::format("the columns are {}", fmt::join(listed, ", "));
 }
 
-std::string CsvTable::Header() const { return fmt::format("{}:{}", file, header_line); }
-
 TableReader::TableReader(const std::filesystem::path& path, const std::string& encoding)
     : pieces_(path, encoding), first_(pieces_.Next()), table_{.file = pieces_.name()} {
   if (!pieces_.note().empty()) table_.notes.push_back(pieces_.note());

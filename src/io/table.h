@@ -39,7 +39,7 @@ struct CsvTable {
   /// "the columns are 'x' (column 1), 'F' (column 2)".
   [[nodiscard]] std::string Listing() const;
   /// "file:line" of the header.
-  [[nodiscard]] std::string Header() const;
+  [[nodiscard]] std::string Header() const { return file + ':' + std::to_string(header_line); }
 };
 
 /// How the rows of a text are read. Delimiter and decimal mark are those under which the first 1000

@@ -114,28 +114,26 @@ io::Plot ToPlot(const Report& report) {
   PlotPanel residual = {.height = 0.45};
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
+  const auto add = [](std::vector<PlotSeries>& to, PlotSeries series) {
+    if (!series.y.empty()) to.push_back(std::move(series));
+  };
   for (std::size_t r = 0; r < records; ++r) {
     const loop::Record& record = report.records[r].record;
     const RecordFit& fit = report.fit.records[r];
+    const std::vector<double>& x = record.displacement;
     const std::string label = LabelOf(report, r);
-    const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
-                         const std::vector<double>& x, const std::vector<double>& y,
-                         std::optional<double> shade = {}) {
-      if (!y.empty())
-        to.push_back({.label = std::move(name), .x = x, .y = y, .style = style, .shade = shade});
-    };
     // The first shade of a record that is alone is apart from the two lines that are fitted.
     const double shade =
         records == 1 ? 0.0 : static_cast<double>(r) / static_cast<double>(records - 1);
-    add(measured.series, label.empty() ? "measured" : label, PlotStyle::kPoints,
-        record.displacement, record.force, shade);
-    const std::vector<double>& along_fit =
-        fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
-    add(lines, r > 0 ? "" : "fitted", PlotStyle::kLine, along_fit, fit.fitted_force);
-    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, shade);
+    add(measured.series,
+        {label.empty() ? "measured" : label, x, record.force, PlotStyle::kPoints, shade});
+    const bool is_of_force = fit.fitted_displacement.empty();
+    add(lines,
+        {r > 0 ? "" : "fitted", is_of_force ? x : fit.fitted_displacement, fit.fitted_force});
+    add(residual.series, {"", x, fit.residual, PlotStyle::kPoints, shade});
     if (report.next && r < report.next->fitted_force.size()) {
-      add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r]);
+      const std::string name = r > 0 ? "" : "fitted with " + report.next->options;
+      add(lines, {name, x, report.next->fitted_force[r]});
     }
   }
   measured.series.insert(measured.series.end(), lines.begin(), lines.end());
