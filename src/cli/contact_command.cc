@@ -30,8 +30,7 @@ void RunContact(const ContactOptions& given, Console& console) {
       "delta_c = 3 mu N G*/(16 a)");
   Json parameters = Json::object();
   Add(parameters, "sigma", made.tangential_stiffness, "N/m", "8a/G*");
-  Add(parameters, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
-      "1/3, Mindlin");
+  Add(parameters, "alpha", contact::kMindlinShapeExponent, "-", "1/3, Mindlin");
   Add(parameters, "slip_force", made.slip_force, "N", "Tc = mu N");
   Say("contact: warning", contact::DoubtsAbout(given.known), console);
   Json rows = quantities;

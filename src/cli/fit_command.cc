@@ -23,9 +23,7 @@ void RunFit(const FitCommandOptions& options, Console& console) {
     Say("fit", {(failed ? "the fit failed: " : "") + fault}, console);
   }
   // The plot first: it alone may still fail.
-  if (!failed && !options.plot_path.empty()) {
-    io::WritePlot(report::ToPlot(report), options.plot_path);
-  }
+  if (!failed && !options.plot_path.empty()) io::WritePlot(ToPlot(report), options.plot_path);
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, ToPage(report, console.command_line));
   }

@@ -124,18 +124,17 @@ Plan MakePlan(const PlanOptions& options) {
   Protocol protocol = options.protocol;
   for (const double amplitude : amplitudes) {
     protocol.amplitude = amplitude;
-    plan.loops.push_back(identification::ExpectFit(expected, protocol));
+    plan.loops.push_back(ExpectFit(expected, protocol));
   }
   if (wanted.empty()) return plan;
   // Just short of slip the error of a sharp knee's Tc is many times that at slip: an amplitude that
   // reaches slip is to give the wanted precision even if it is smaller by the margin.
   const auto factor_of = [&](const ExpectedFit& fit) {
-    const double factor = identification::CyclesFactor(fit, wanted);
+    const double factor = CyclesFactor(fit, wanted);
     Protocol smaller = fit.protocol;
     smaller.amplitude /= kMargin;
     if (fit.protocol.amplitude < plan.slip) return factor;
-    return std::max(
-        factor, identification::CyclesFactor(identification::ExpectFit(expected, smaller), wanted));
+    return std::max(factor, CyclesFactor(ExpectFit(expected, smaller), wanted));
   };
   std::optional<double> least;
   for (const ExpectedFit& fit : plan.loops) {

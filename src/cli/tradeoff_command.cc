@@ -65,9 +65,8 @@ Json Measure(const std::string& name, const methods::Drive& drive, const BranchL
 
 Json MeasureAll(const TradeoffOptions& request, const BranchLaw& law) {
   if (!request.path.empty()) {
-    const std::vector<double> displacement = io::ImposedDisplacement(request.path, request.column);
-    return Json::array(
-        {Measure(request.path, {.displacement = displacement}, law, request.tolerance)});
+    const std::vector<double> motion = io::ImposedDisplacement(request.path, request.column);
+    return Json::array({Measure(request.path, {.displacement = motion}, law, request.tolerance)});
   }
   return report::ListOf(kScenes, [&](const Scene& scene) {
     models::ExcitationOptions options = scene.excitation;

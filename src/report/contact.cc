@@ -134,14 +134,12 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   for (const QuantityRow& row : kQuantities) {
     ContactQuantity& quantity = quantities.emplace_back(row.quantity);
     const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
-    const bool has_radius = row.is_of_sphere && known.contact_radius;
+    const double exponent = row.is_of_sphere && known.contact_radius ? 0.0 : row.exponent;
     std::optional<UncertainValue> found;
     if (sigma.value > 0 && slip_force.value > 0 && !(row.is_of_sphere && denies_hertz)) {
       found = contact::IdentifyContact(row.kind, sigma.value, slip_force.value, known);
     }
-    if (found) {
-      Fill(fit, *found, {&parameter, has_radius ? 0.0 : row.exponent}, {&parameter}, quantity);
-    }
+    if (found) Fill(fit, *found, {&parameter, exponent}, {&parameter}, quantity);
     if (quantity.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
     quantities.push_back(SlipForce(fit, {"slip_force_positive", "Tc up", "N", "slip_force"}, 1));
     quantities.push_back(SlipForce(fit, {"slip_force_negative", "down", "N", "slip_force"}, -1));

@@ -79,8 +79,7 @@ void CollectWarnings(Report& report) {
   }
   if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
   if (report.is_torsional() || report.failed() || !report.check.empty()) return;
-  for (const std::string& sentence :
-       contact::DoubtsAbout(report.known, report.ValueOf("contact_radius"))) {
+  for (const std::string& sentence : DoubtsAbout(report.known, report.ValueOf("contact_radius"))) {
     report.warnings.push_back({"contact_implausible", sentence});
   }
 }
