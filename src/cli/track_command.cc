@@ -55,8 +55,7 @@ struct TrackedTest {
     if (is_loop) energy += static_cast<double>(fit.cycles) * fit["energy"].value_or(0.0);
     ++fits;
     for (const std::string& flag : fit.flags) ++flags[flag];
-    const bool is_without = fit.HasFlag("not_converged") || fit.HasFlag("no_loop");
-    if (is_without) {
+    if (fit.HasFlag("not_converged") || fit.HasFlag("no_loop")) {
       cycles_without += fit.cycles;
     } else {
       last_with = fit.number + fit.cycles - 1;
@@ -168,17 +167,16 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
         fmt::format("evolution-{}", ++count), panel.y_label,
         "Dashed lines are steps beyond chance, and where the quantity settled.", panel);
   }
-  const bool is_failed = !test.established();
   const bool is_steady = changes.empty() && test.cycles_without == 0;
   return report::PageHtml(
       fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
-      (is_failed ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
-                 : report::VerdictHtml(is_steady ? "good" : "poor",
-                                       is_steady         ? "steady"
-                                       : changes.empty() ? "incomplete"
-                                                         : "changed",
-                                       test.Headline()) +
-                       report::ListHtml(changes)) +
+      (!test.established() ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
+                           : report::VerdictHtml(is_steady ? "good" : "poor",
+                                                 is_steady         ? "steady"
+                                                 : changes.empty() ? "incomplete"
+                                                                   : "changed",
+                                                 test.Headline()) +
+                                 report::ListHtml(changes)) +
           report::SectionHtml(
               "Over the test",
               report::ListHtml(Facts(test)) +

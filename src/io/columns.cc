@@ -244,8 +244,7 @@ void ObserveValues(Column& column) {
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
 
 bool MayHaveRole(std::optional<Dimension> dimension, Role role) {
-  const bool is_role = role <= Role::kNormalLoad;
-  return is_role && dimension &&
+  return role <= Role::kNormalLoad && dimension &&
          (*dimension == RulesOf(role).linear || *dimension == RulesOf(role).angular);
 }
 

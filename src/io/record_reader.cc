@@ -178,13 +178,12 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
   is_read[file.time.index] = is_read[file.normal_load.index] = true;
-  const std::size_t most = choices.size() + kMostOtherColumns;
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     const std::string& name = table.columns[column].name;
     const bool is_one =
         !name.empty() && std::ranges::count(table.columns, name, &Column::name) == 1;
     if (is_read[column + 1] || table.columns[column].is_clock) continue;
-    if (file.record.covariates.size() == most) return;
+    if (file.record.covariates.size() == choices.size() + kMostOtherColumns) return;
     add(column, is_one ? name : std::to_string(column + 1), false);
   }
 }

@@ -161,8 +161,7 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   const bool may_be_linear = quantity.role > Role::kForce;  // a load of a joint may be a force
   const bool is_known =
       unit && (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear));
-  const bool may_be_unknown = !is_given && (symbol.empty() || quantity.is_scaled);
-  if (!is_known && (!may_be_unknown || stated.size() > 1)) {
+  if (!is_known && (is_given || (!symbol.empty() && !quantity.is_scaled) || stated.size() > 1)) {
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",

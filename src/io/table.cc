@@ -269,10 +269,9 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
     Row row{.text = TakeLine(rest), .line = ++line};
     row.is_comment = IsBlankOrComment(row.text);
-    const bool is_above = sampled.empty() || sampled.back().is_comment;
     if (!row.is_comment) {
       sampled.push_back(std::move(row));
-    } else if (is_above && !Trimmed(row.text).empty()) {
+    } else if ((sampled.empty() || sampled.back().is_comment) && !Trimmed(row.text).empty()) {
       row.text.remove_prefix(row.text.find('#') + 1);
       sampled.assign(1, row);
     }

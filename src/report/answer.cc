@@ -385,7 +385,6 @@ std::string MisfitStatement(const Report& report) {
 std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
 
 std::vector<Line> DetailLines(const Report& report) {
-  constexpr int kDigits = 4;
   std::vector<Line> lines;
   const FitResult& fit = report.fit;
   if (report.notes.size() > 1) {
@@ -405,7 +404,7 @@ std::vector<Line> DetailLines(const Report& report) {
     std::vector<std::string> values;
     for (const auto& [name, value] : document[section].items()) {
       if (value.is_null() || value.is_structured()) continue;
-      values.push_back(fmt::format("{} {}", WithBlanks(name), CellText(value, kDigits)));
+      values.push_back(fmt::format("{} {}", WithBlanks(name), CellText(value, /*digits=*/4)));
     }
     if (!values.empty()) lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
   }

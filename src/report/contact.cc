@@ -127,7 +127,6 @@ bool ExcludesAThird(const ParameterEstimate& estimate) {
 }  // namespace
 
 std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownContact& known) {
-  const bool denies_hertz = DeniesHertz(fit);
   const ParameterEstimate& sigma = *fit.Find("sigma");
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   std::vector<ContactQuantity> quantities;
@@ -136,7 +135,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
     const double exponent = row.is_of_sphere && known.contact_radius ? 0.0 : row.exponent;
     std::optional<UncertainValue> found;
-    if (sigma.value > 0 && slip_force.value > 0 && !(row.is_of_sphere && denies_hertz)) {
+    if (sigma.value > 0 && slip_force.value > 0 && !(row.is_of_sphere && DeniesHertz(fit))) {
       found = contact::IdentifyContact(row.kind, sigma.value, slip_force.value, known);
     }
     if (found) Fill(fit, *found, {&parameter, exponent}, {&parameter}, quantity);

@@ -76,8 +76,7 @@ Json Correlations(const Report& report) {
 }
 
 Json MeasuredJson(const Report& report) {
-  const RecordFit& widest = report.fit.WidestRecord();
-  const loop::LoopFacts& facts = widest.facts;
+  const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
   const auto if_closed = [&](std::optional<double> value) {
     return facts.closed ? NumberOrNull(value) : Json();
   };

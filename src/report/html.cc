@@ -86,8 +86,7 @@ std::string TableHtml(std::string_view caption, const std::vector<std::string>& 
 
 std::string FigureHtml(std::string_view id, std::string_view title, std::string_view text,
                        const io::PlotPanel& panel) {
-  constexpr std::size_t kMostPoints = 6000;
-  const io::Drawing drawing = io::DrawPanel(panel, kWidth, kMostPoints);
+  const io::Drawing drawing = io::DrawPanel(panel, kWidth, /*most_points=*/6000);
   return FigureHtml(id, title, text, static_cast<int>(drawing.height), drawing.elements);
 }
 

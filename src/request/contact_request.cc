@@ -51,9 +51,8 @@ bool IsAnythingGiven(const LawRequest& request) {
 BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
                      std::optional<double> prescribed_exponent) {
   Validate(request.contact);
-  const bool by_parameters = request.sigma || request.slip_force;
   const bool by_contact = IsAnythingGiven(request.contact);
-  if (by_parameters && by_contact) {
+  if ((request.sigma || request.slip_force) && by_contact) {
     Refuse(
         "--sigma and --slip-force exclude --friction, --normal-load and other options that "
         "describe a contact: give one of the two");

@@ -38,8 +38,6 @@ namespace {
 /// Refuses records that are no loops, naming the place in the file: of two kinds, or of a column
 /// that never changes or is beyond any unit that is meant.
 void RequireLoops(const std::vector<RecordFile>& inputs) {
-  constexpr double kSmallest = 1e-100;
-  constexpr double kLargest = 1e100;
   const RecordFile& first = inputs.front();
   const report::Units& units = report::UnitsOf(first.is_torsional);
   for (const RecordFile& input : inputs) {
@@ -63,7 +61,7 @@ void RequireLoops(const std::vector<RecordFile>& inputs) {
             "{}: the {} never changes, it is {} {} in every row: choose another column with --{}",
             at, what, *least, unit, what);
       }
-      if (half >= kSmallest && half <= kLargest) continue;
+      if (half >= 1e-100 && half <= 1e100) continue;
       Refuse(
           "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: choose other "
           "units",
@@ -412,9 +410,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (made.next && found.model == asked.fit.model) {
     identification::IncludeFit(found, asked.options.thresholds, asked.fit);
   }
-  const bool is_described = made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate;
   const auto disproportion = FindDisproportion(asked.fit);
-  if (disproportion && !is_described) {
+  if (disproportion && !(made.next && found.adequacy.verdict == AdequacyVerdict::kAdequate)) {
     asked.fit.findings.push_back(*disproportion);
     asked.fit.adequacy.causes.clear();
     made.next.reset();

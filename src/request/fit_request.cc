@@ -84,14 +84,13 @@ FitOptions MakeFitOptions(const FitRequest& request) {
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
   FitOptions fit = MakeFitOptions(request);
-  const bool is_asymmetric = std::ranges::find(fit.terms, "asymmetry") != fit.terms.end();
   // A cycle of gross slip does not distinguish an asymmetry from an offset of the force.
   for (const auto& [is_given, option] :
        {std::pair(request.compare, "--compare"),
         {!request.fit.covariates.empty(), "--covariate"},
         {!fit.covariates.empty(), "--terms of a column"},
         {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
-        {is_asymmetric, "--terms asymmetry"}}) {
+        {std::ranges::find(fit.terms, "asymmetry") != fit.terms.end(), "--terms asymmetry"}}) {
     if (!is_given) continue;
     Refuse("{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
            option);
