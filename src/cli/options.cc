@@ -13,12 +13,6 @@ namespace {
 
 constexpr const char* kColumnGroup = "Columns and units";
 
-/// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
-std::string_view UnitOf(std::string_view parameter) {
-  const Term* term = identification::FindTerm(identification::TermNameOf(parameter));
-  return term == nullptr ? "-" : term->unit;
-}
-
 /// Returns what was read of a text.
 /// @param form  how to write it
 template <typename Value>
@@ -292,7 +286,9 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
         option,
         [&target, option, form, parse](const std::string& text) {
           const auto [name, value] = Split(text, '=');
-          auto parsed = parse(value, UnitOf(name));
+          const Term* term = identification::FindTerm(identification::TermNameOf(name));
+          auto parsed =
+              parse(value, term == nullptr ? "-" : term->unit);  // the fit knows all names
           if (name.empty()) parsed.reset();
           GiveOnce(option, name, Read(std::move(parsed), option, text, form), target);
         },

@@ -30,17 +30,6 @@ Json If(bool there_is, Json members) {
   return members;
 }
 
-Json LeftOutJson(const Report& report) {
-  const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
-  return ListOf(report.left_out, [&](const LeftOut& part) -> Json {
-    return {{"file", part.file},
-            {"samples", part.samples},
-            {"first", line(part.first)},
-            {"last", line(part.last)},
-            {"why", part.why}};
-  });
-}
-
 Json Parameters(const Report& report) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : report.fit.parameters) {
@@ -224,7 +213,14 @@ Json DocumentOf(const Report& report) {
         {"samples", report.samples},
         {"cycles", cycles},
         {"reversals", reversals},
-        {"left_out", LeftOutJson(report)}}},
+        {"left_out", ListOf(report.left_out,
+                            [](const LeftOut& part) -> Json {
+                              return {{"file", part.file},
+                                      {"samples", part.samples},
+                                      {"first", part.first > 0 ? Json(part.first) : Json()},
+                                      {"last", part.last > 0 ? Json(part.last) : Json()},
+                                      {"why", part.why}};
+                            })}}},
       {"model", fit.model->name},
       {"initial_state", Name(fit.initial_state)},
       {"parameters", Parameters(report)},
