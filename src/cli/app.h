@@ -25,8 +25,7 @@ inline constexpr int kInternalError = 1;
 inline constexpr int kBadInput = 2;
 inline constexpr int kNotEstablished = 3;  // not converged, not identifiable when strict, not valid
 
-/// The command line, as main() calls it and as tests do.
-/// @returns the exit status of docs/contract.md
+/// Runs the command line and returns the exit status of docs/contract.md.
 int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
 
 /// Reads options without running a command, as its words would be read.

@@ -155,8 +155,7 @@ class OptionGroup {
         "number of worker threads (default: one per core); they do not change\n";
     return Add("--threads", threads, help + unchanged)->check(CLI::Range(1, 1024).description(""));
   }
-  /// Adds --path, a file with an imposed displacement, and --displacement, its column.
-  /// @returns the former
+  /// Adds --path, which it returns, a file with a displacement, and --displacement, its column.
   CLI::Option* AddPath(std::string& path, std::string& column) const {
     CLI::Option* const file =
         Add("--path", path, "CSV file with a displacement, any sequence", "FILE");
@@ -214,15 +213,13 @@ void AddStrict(CLI::App& command, Strictness& strictness, const std::string& oth
 /// @throws InputError when the file cannot be written
 void WriteText(std::string_view text, const std::string& path, Console& console);
 
-/// Says sentences on standard error.
-/// @param what  "fit: note"
+/// Says sentences on standard error, each behind "mindahl <what>: ".
 void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console);
 
 /// Writes an answer as JSON where that is asked for, and as text unless the JSON goes there.
 void WriteAnswer(Console& console, std::string_view json, std::string_view text);
 
-/// Refuses a file that is given twice, by one name or by two: its samples would count twice.
-/// @throws InputError naming both
+/// Refuses a file that is given twice, by one name or two, since its samples would count twice.
 void RequireDistinctFiles(std::span<const std::string> files);
 
 /// Returns the command line as a shell takes it, words in single quotes where they need them.

@@ -13,8 +13,7 @@ namespace {
 
 constexpr const char* kColumnGroup = "Columns and units";
 
-/// Returns what was read of a text.
-/// @param form  how to write it
+/// Returns what was read of a text, or refuses it and says how to write it.
 template <typename Value>
 Value Read(const std::optional<Value>& value, std::string_view option, std::string_view text,
            std::string_view form) {

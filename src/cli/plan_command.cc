@@ -35,8 +35,7 @@ struct Plan {
   std::vector<std::string> notes = {};
 };
 
-/// Takes law and noise from a fit of a record by Masing's law, or by Dahl's own where that fits
-/// better; where it does not identify α, with Mindlin's.
+/// Takes law and noise from a fit of a record by the better law; by Mindlin's α, if α is open.
 void TakeRecord(const PlanOptions& options, Plan& plan) {
   if (IsAnythingGiven(options.law)) Refuse("--record excludes --sigma, --alpha and --slip-force");
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);

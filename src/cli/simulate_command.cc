@@ -35,8 +35,7 @@ struct SimulateOptions {
   std::string output;
 };
 
-/// Returns the imposed displacement: of a file with time that counts rows; the envelope is empty
-/// unless the amplitude changes along the way.
+/// Returns the imposed displacement: of a file with its rows as time; with an envelope if it grows.
 models::Excitation MakeMotion(const SimulateOptions& options, const models::BranchLaw& law) {
   models::Excitation motion;
   if (!options.path.empty()) {

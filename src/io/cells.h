@@ -24,8 +24,7 @@ bool IsBlankOrComment(std::string_view line);
 /// Separates the cells of a row; kBlanks is any run of spaces and tabs.
 inline constexpr char kBlanks = ' ';
 
-/// Takes the cells off a row one by one (RFC 4180), without the blanks around them. A trailing
-/// delimiter makes an empty cell.
+/// Takes the cells off a row (RFC 4180) without blanks around them; behind a last delimiter is one.
 class CellCursor {
  public:
   CellCursor(std::string_view row, char delimiter) : delimiter_(delimiter) {
@@ -42,8 +41,7 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
-  /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
-  /// @returns false where it is none, and is not taken
+  /// Takes the next cell if it is a number with a decimal point and no sign of plus; else false.
   bool TakeNumber(double& value) {
     const char* const begin = SkipBlanks(at_);
     const char* digits = begin;

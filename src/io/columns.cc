@@ -70,8 +70,7 @@ std::string WordsIn(std::string_view name) {
 /// True for a word of a language that does not part its words by blanks.
 bool IsUnparted(std::string_view word) { return static_cast<unsigned char>(word.front()) >= 0xE3; }
 
-/// Returns the place behind the last match of an entry of the table in such words; 0 where there is
-/// none. "*kraft" is the end of a word.
+/// Returns the end of the last match of a table's entry in such words, 0 without one.
 std::size_t MatchEnd(std::string_view entry, std::string_view words) {
   std::string pattern(entry.starts_with('*') ? entry.substr(1) : entry);
   if (!IsUnparted(entry)) pattern += ' ';

@@ -126,8 +126,7 @@ void Append(const PlotSeries& series, char axis, const Values& values, bool is_l
   all.insert(all.end(), values.begin(), values.end());
 }
 
-/// Returns the points to draw, in order: of runs of consecutive points those with the least and
-/// greatest coordinates; all, where there are at most `most`.
+/// Returns the points to draw, in order: all, or of runs those with least and greatest coordinates.
 std::set<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   const std::size_t size = series.x.size();
   const std::size_t runs = size <= most ? size : most / 4;

@@ -78,9 +78,8 @@ class RecordBuilder {
   /// Returns the columns that are used, from 0.
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
 
-  /// Fills samples, of which there are none, with the rows of a table, up to one that is refused;
-  /// those without a number in a column that is used are left out, up to one in a hundred, or all
-  /// where broken rows are skipped.
+  /// Fills empty samples with the rows of a table, up to one that is refused; rows without a number
+  /// in a column that is used are left out: one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Fill(Samples& samples, const CsvTable& table) {
     const auto resize = [&](std::size_t size) {
@@ -147,8 +146,7 @@ class RecordBuilder {
 
 namespace {
 
-/// Reads the columns chosen in addition to displacement and force, then some of the others: those
-/// with a number in every row, and not the same in all.
+/// Reads the columns that were chosen, then others that have a number in every row and change.
 void AddCovariates(const CsvTable& table, const std::vector<std::string>& choices,
                    RecordFile& file) {
   std::vector<bool> is_read(table.columns.size() + 1);  // by the number from 1

@@ -44,8 +44,7 @@ int EvidenceFor(const Column& column, Role role) {
   return found > kLesser && column.is_lesser ? found - kLesser : found;
 }
 
-/// Returns how well a column suits a role: 0 is not at all. What goes to and fro is a displacement
-/// or a force before what rests.
+/// Returns how well a column suits a role, 0 not at all: what moves is a displacement or a force.
 /// @param turns  whether it is to be an angle or a torque, where that is known
 int ScoreFor(const Column& column, Role role, std::optional<bool> turns) {
   const int evidence = EvidenceFor(column, role);
@@ -66,8 +65,7 @@ std::string UnitOfStamp(double number) {
   return "";
 }
 
-/// Returns the column of a name, or of a number from 1 behind '#'.
-/// @param where  it stands, for the refusal of one that there is not
+/// Returns the column of a name, or of a number from 1 behind '#'; refuses one that is not there.
 std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_view where,
                      Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
@@ -318,8 +316,7 @@ class RoleAssigner {
            RulesOf(role).name, table_.Listing(), RulesOf(role).option);
   }
 
-  /// Refuses a column without a unit whose numbers are those of a clock or a counter, where those
-  /// of the other role go to and fro.
+  /// Refuses a column without a unit that only grows or falls, where the other goes to and fro.
   void RequireMoving(Role role, Role other) {
     const Column& of = ColumnOf(role);
     const bool has_unit = !Of(role).given_unit.empty() || EvidenceFor(of, role) >= kUnit;

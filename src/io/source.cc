@@ -28,8 +28,7 @@ Decoder DecoderFrom(const std::string& encoding) {
   return {is_known ? opened : nullptr, [](void* decoder) { ::iconv_close(decoder); }};
 }
 
-/// Moves all whole characters of a text, decoded, to the end of another.
-/// @returns false where bytes are left that are no begin of a character
+/// Moves the whole characters of a text, decoded, to another; false where the next is not valid.
 bool Decode(const Decoder& decoder, std::string& text, std::string& to) {
   char* from = text.data();
   std::size_t left = text.size();

@@ -56,8 +56,7 @@ struct Row {
     return !is_comment && Count(Cell::Kind::kNumber) >= 1 &&
            (kinds.front() == Cell::Kind::kNumber || cells.size() - texts - empty >= 2);
   }
-  /// Returns that many names of a header between blanks: words, each with what is in brackets
-  /// behind it, or what two blanks or a tab separate.
+  /// Returns names between blanks: words with brackets behind them, or between two blanks or a tab.
   [[nodiscard]] std::optional<Strings> NamesByBlanks(std::size_t number) const {
     Strings names;
     for (const std::string& word : cells) {
@@ -438,8 +437,7 @@ double TableReader::ReadText(std::size_t column, std::string_view text) {
   return is_missing ? cell.value : kBroken;
 }
 
-/// True for a row of text that repeats the header, or is above a header that is repeated, which
-/// the next row of numbers decides.
+/// True for a row of text that is, or may be above, a header that is repeated.
 bool TableReader::IsText(std::string_view row) {
   if (row == layout_.names_row) text_fault_.clear();
   if (row == layout_.names_row || row == layout_.units_row) return true;

@@ -52,8 +52,7 @@ struct Layout {
   std::string names_row = {}, units_row = {};  // as they stand in the file: blocks repeat them
 };
 
-/// Fills a table from a file that is plain or compressed by gzip, piece by piece. About 0.1 s for
-/// 10⁶ cells; keeps 8 bytes a number.
+/// Fills a table from a file, piece by piece: 0.1 s for 10⁶ cells, in 8 bytes a number.
 class TableReader {
  public:
   /// Finds the layout.
@@ -90,8 +89,7 @@ class TableReader {
 };
 
 /// Reads a whole file as a table.
-/// @throws InputError as TableReader: one that holds a zero byte or a line of more than 16 MiB is
-///   read no further
+/// @throws InputError as TableReader
 CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {});
 
 }  // namespace mindahl::io

@@ -89,8 +89,7 @@ constexpr std::array kQuantities = {
     QuantityRow{{"maximum_pressure", "p₀", "Pa", "sigma"}, -2, Kind::kMaximumPressure},
 };
 
-/// False where a loop that slides measures another force in that direction: then the asymmetry and
-/// the offset of the force stand for each other.
+/// False where a loop that slides measures another force there: the offset is then the asymmetry's.
 bool IsThatOfThePlateau(const FitResult& fit, double sense, double force) {
   const RecordFit& record = fit.WidestRecord();
   const loop::LoopFacts& facts = record.facts;

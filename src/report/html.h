@@ -31,8 +31,7 @@ struct TableLine {
   std::string_view css_class = {};  ///< style of its head
   std::string address = {};         ///< to which its head leads; "" none
 };
-/// Returns a table; "" without lines.
-/// @param names  of the columns, none for a table without
+/// Returns a table; "" without lines. Columns need not have names.
 std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
                       const std::vector<TableLine>& lines);
 

@@ -43,14 +43,12 @@ Json ListOf(const Rows& rows, Make make) {
   return list;
 }
 
-/// Returns a document as the program writes it, with the end of line; what is not UTF-8 is
-/// replaced.
+/// Returns a document as the program writes it, with an end of line; replaces what is not UTF-8.
 inline std::string Dump(const Json& json) {
   return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
 }
 
-/// Returns the document that a command writes with --json: its schema, "mindahl.plan/1", and the
-/// version of the program before its members.
+/// Returns the document of --json: schema, "mindahl.plan/1", and version before its members.
 std::string Document(std::string_view schema, const Json& members);
 
 // --- tables. A row is an object of the JSON, whose members are its cells; rows are a list of such

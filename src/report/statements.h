@@ -74,8 +74,7 @@ Shown WhatIsShown(const ParameterEstimate& estimate);
 /// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
 std::string ValueText(const ParameterEstimate& estimate);
 
-/// @param over_half_gap  as Adequacy::misfit_over_half_gap
-/// @returns "5.6 % of the half gap", "more than the half gap"
+/// Returns "5.6 % of the half gap" of Adequacy::misfit_over_half_gap, or "more than the half gap".
 std::string MisfitShare(double over_half_gap);
 
 /// Says what the next step would do: "a lag, misfit 5.6 % → 2.1 % of the half gap (tried)".

@@ -39,8 +39,7 @@ const struct Repeated {
                  {"half_gap", "", "N"},
                  {"energy_per_cycle", "", "J"}};
 
-/// Returns the row of a file in the table.
-/// @param fit  its JSON, null where it has none
+/// Returns the row of a file in the table, of the JSON of its fit, which may be null.
 Json RowOf(const BatchEntry& entry, const Json& fit) {
   Json row = {{"file", entry.file},
               {"done", entry.done},
@@ -86,8 +85,7 @@ Json RowOf(const BatchEntry& entry, const Json& fit) {
 constexpr std::string_view kSeveralLaws =
     "fits are by several laws, whose parameters are not compared: --model NAME fits all by one";
 
-/// Returns the scatter of each quantity that two files or more have, next to their stated errors:
-/// root mean square, null of what states none.
+/// Returns the scatter of each quantity of two files or more, and the rms of their stated errors.
 Json RepeatRows(const Json& table, bool has_several_laws) {
   const double seen_loop = identification::Thresholds().seen_loop;
   Json repeats = Json::object();
@@ -122,8 +120,7 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
   return repeats;
 }
 
-/// Returns the index of the entries' pages.
-/// @param note  on the repeats
+/// Returns the index of the entries' pages, with a note on the repeats.
 std::string IndexPage(std::span<const BatchEntry> entries, std::string_view title,
                       const Json& repeats, std::string_view note, std::string_view command) {
   std::vector<report::TableLine> files;

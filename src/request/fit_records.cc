@@ -111,8 +111,7 @@ void NoteOtherLoads(const FitOptions& options, report::ReportInput& input) {
   }
 }
 
-/// Takes back a preference for the law that the program did not choose.
-/// @returns true if there was one
+/// Takes back a preference for the law that the program did not choose; true if there was one.
 bool WithdrawPreference(FitResult& fit) {
   if (!fit.prefers_other_law()) return false;
   fit.law_choice->preferred = nullptr;
@@ -122,8 +121,8 @@ bool WithdrawPreference(FitResult& fit) {
   return true;
 }
 
-/// Fits by the model of the options or, where that is to be chosen, by Masing's law or, where the
-/// record supports it, by Dahl's own.
+/// Fits by the model of the options or, if it is to be chosen, by Dahl's own law where it is
+/// better.
 TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
                        std::span<const Record> records) {
   TermSelection asked{.options = options, .fit = identification::Fit(records, options)};
@@ -228,8 +227,7 @@ std::optional<identification::Finding> FindDisproportion(const FitResult& fit) {
                                  .kind = "not_proportional"};
 }
 
-/// Adds a term to the options, and what a user does for it to the step.
-/// @param name  as LikelyTerms() gives it
+/// Adds a term, named as by LikelyTerms(), to the options, and what a user does for it to the step.
 void AddTerm(const std::string& name, const Record& record, FitOptions& options,
              report::NextStep& step) {
   if (const auto* group = identification::FindTermGroup(name)) {
