@@ -151,14 +151,12 @@ class OptionGroup {
     return Add("--json", console.json_path, "answer as JSON; - for standard output alone", "PATH");
   }
   CLI::Option* AddThreads(std::size_t& threads, const std::string& unchanged) const {
-    const std::string help =
-        "number of worker threads (default: one per core); they do not change\n";
+    const char* help = "number of worker threads (default: one per core); they do not change\n";
     return Add("--threads", threads, help + unchanged)->check(CLI::Range(1, 1024).description(""));
   }
   /// Adds --path, which it returns, a file with a displacement, and --displacement, its column.
   CLI::Option* AddPath(std::string& path, std::string& column) const {
-    CLI::Option* const file =
-        Add("--path", path, "CSV file with a displacement, any sequence", "FILE");
+    CLI::Option* file = Add("--path", path, "CSV file with a displacement, any sequence", "FILE");
     Add("--displacement", column,
         "its column, by header name or number, with its unit, \"[um]\", if the\nheader has none; "
         "default by its name, else the first",

@@ -93,9 +93,7 @@ void FindWord(Column& column) {
   for (const WordRow& row : kWords) {
     for (const std::string_view entry : PartsOf(row.words, '|')) {
       const bool is_letter = CharactersIn(entry) == 1 && entry.size() < 3;
-      const std::size_t end = !is_letter      ? MatchEnd(entry, words)
-                              : only == entry ? words.size()
-                                              : 0;
+      const auto end = !is_letter ? MatchEnd(entry, words) : only == entry ? words.size() : 0;
       if (end == 0) continue;
       const std::size_t size = is_letter           ? parts.size()
                                : IsUnparted(entry) ? CharactersIn(entry)

@@ -59,10 +59,9 @@ class RecordBuilder {
       const std::size_t first = quantity.first_column();
       const bool is_plain = quantity.is_plain();
       if (is_plain && quantity.role <= Role::kForce) RequireNoSignBit(table, quantity);
-      for (const Quantity::Term& term : quantity.terms) {
-        wanted_.push_back(term.column);
-        if (table.columns[term.column].values.empty())
-          static_cast<void>(table.Numbers(term.column));
+      for (const auto& [column, weight] : quantity.terms) {
+        wanted_.push_back(column);
+        if (table.columns[column].values.empty()) static_cast<void>(table.Numbers(column));
       }
       file_.*role.chosen = {.name = is_plain ? table.columns[first].header : asked.*role.given,
                             .index = first + 1,
@@ -147,8 +146,7 @@ class RecordBuilder {
 namespace {
 
 /// Reads the columns that were chosen, then others that have a number in every row and change.
-void AddCovariates(const CsvTable& table, const std::vector<std::string>& choices,
-                   RecordFile& file) {
+void AddCovariates(const CsvTable& table, const std::vector<std::string>& asked, RecordFile& file) {
   std::vector<bool> is_read(table.columns.size() + 1);  // by the number from 1
   const auto add = [&](std::size_t column, const std::string& name, bool may_be_constant) {
     const std::vector<double>& all = table.columns[column].values;
@@ -167,7 +165,7 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
     return true;
   };
   is_read[file.displacement.index] = is_read[file.force.index] = true;
-  for (const std::string& choice : choices) {
+  for (const std::string& choice : asked) {
     const std::size_t column = ReadCovariate(choice, table);
     if (is_read[column + 1]) {
       Refuse("{}: {} is used already: choose another column for the covariate", table.file,
@@ -181,7 +179,7 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
     const bool is_one =
         !name.empty() && std::ranges::count(table.columns, name, &Column::name) == 1;
     if (is_read[column + 1] || table.columns[column].is_clock) continue;
-    if (file.record.covariates.size() == choices.size() + kMostOtherColumns) return;
+    if (file.record.covariates.size() == asked.size() + kMostOtherColumns) return;
     add(column, is_one ? name : std::to_string(column + 1), false);
   }
 }

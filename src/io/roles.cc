@@ -66,12 +66,11 @@ std::string UnitOfStamp(double number) {
 }
 
 /// Returns the column of a name, or of a number from 1 behind '#'; refuses one that is not there.
-std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_view where,
-                     Role role) {
+std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_view at, Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
   if (number >= 1 && number <= table.columns.size()) return *number - 1;
   if (const auto named = table.Named(name, role)) return *named;
-  Refuse("{}: no column is called '{}' (for the {}): {}", where, name, RulesOf(role).name,
+  Refuse("{}: no column is called '{}' (for the {}): {}", at, name, RulesOf(role).name,
          table.Listing());
 }
 

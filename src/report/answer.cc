@@ -374,9 +374,8 @@ std::string MisfitStatement(const Report& report) {
     return text + ": the law is not the whole story" +
            (is_included ? "; the intervals include it" : "");
   }
-  const bool is_any_known = std::ranges::any_of(fit.parameters, [&](const auto& estimate) {
-    return IsOfLaw(estimate.name) && WhatIsShown(estimate).is_estimate() &&
-           !IsMoot(report, estimate);
+  const bool is_any_known = std::ranges::any_of(fit.parameters, [&](const auto& of) {
+    return IsOfLaw(of.name) && WhatIsShown(of).is_estimate() && !IsMoot(report, of);
   });
   return text + ": the law does not describe the record" +
          (is_any_known ? "; what stands above is known" : "; use what is measured");

@@ -127,9 +127,8 @@ io::Plot ToPlot(const Report& report) {
         records == 1 ? 0.0 : static_cast<double>(r) / static_cast<double>(records - 1);
     add(measured.series,
         {label.empty() ? "measured" : label, x, record.force, PlotStyle::kPoints, shade});
-    const bool is_of_force = fit.fitted_displacement.empty();
-    add(lines,
-        {r > 0 ? "" : "fitted", is_of_force ? x : fit.fitted_displacement, fit.fitted_force});
+    const bool is_force = fit.fitted_displacement.empty();
+    add(lines, {r > 0 ? "" : "fitted", is_force ? x : fit.fitted_displacement, fit.fitted_force});
     add(residual.series, {"", x, fit.residual, PlotStyle::kPoints, shade});
     if (report.next && r < report.next->fitted_force.size()) {
       const std::string name = r > 0 ? "" : "fitted with " + report.next->options;

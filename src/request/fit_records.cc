@@ -121,12 +121,10 @@ bool WithdrawPreference(FitResult& fit) {
   return true;
 }
 
-/// Fits by the model of the options or, if it is to be chosen, by Dahl's own law where it is
-/// better.
-TermSelection FitByLaw(bool chooses_law, const FitOptions& options,
-                       std::span<const Record> records) {
+/// Fits by the model of the options; if it is to be chosen, by Dahl's own law where that is better.
+TermSelection FitByLaw(bool chooses, const FitOptions& options, std::span<const Record> records) {
   TermSelection asked{.options = options, .fit = identification::Fit(records, options)};
-  if (chooses_law && asked.fit.prefers_other_law()) {
+  if (chooses && asked.fit.prefers_other_law()) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     FitResult other = identification::Fit(records, of_other);

@@ -15,8 +15,7 @@ namespace mindahl::io {
 /// Selects the columns of a file, and how they are read. Each of displacement, force, time and
 /// normal load is a text: "" for the column that is recognised; a header name or a number from 1,
 /// "Fx" or "3"; with its unit, "3 [kN]", or that alone, "[kN]"; or a sum of columns with factors
-/// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's is taken, else
-/// SI.
+/// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's or SI is taken.
 struct RecordColumns {
   std::string displacement{};
   std::string force{};
@@ -71,8 +70,7 @@ struct RecordFile {
 inline constexpr std::size_t kMostOtherColumns = 8;
 
 /// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file, plain or
-/// compressed by gzip; "-" is standard input, and ./- a file of that name. docs/input.md says what
-/// it may look like.
+/// compressed by gzip; "-" is standard input, ./- a file of that name. docs/input.md describes it.
 ///
 /// Columns that are not given are found by evidence: the words of the name, the unit, which counts
 /// more, and whether the numbers go to and fro, which counts most; what none of these decides is

@@ -12,8 +12,7 @@
 namespace mindahl::request {
 
 /// Turns a user's request for a fit, in words and numbers, into the report that answers it: the
-/// same rules and the same messages for the command line and for Python. Messages name the command
-/// line's options.
+/// same rules and messages for the command line, whose options these name, and for Python.
 
 /// Holds the options of `fit` on records, model and contact, which docs/contract.md describes.
 struct FitRequest {
