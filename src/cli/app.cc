@@ -107,9 +107,8 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   CLI::App app{
       "Identifies the friction parameters of a contact from its measured hysteresis loop:\n"
       "tangential displacement and force in; Dahl's stiffness sigma [N/m], shape exponent alpha "
-      "[-]\n"
-      "and slip force Tc [N] out, with their uncertainties and the Hertz-Mindlin contact behind "
-      "them.",
+      "[-]\nand slip force Tc [N] out, with their uncertainties and the Hertz-Mindlin contact "
+      "behind them.",
       "mindahl"};
   app.footer(
       "Every command takes its options from a TOML file too: --config FILE.\n"

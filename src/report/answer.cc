@@ -256,9 +256,8 @@ class Writer {
     std::vector<std::string> parts;
     if (facts.closed) {
       if (facts.half_gap) {
-        parts.push_back("half gap " + QuantityWithError(*facts.half_gap,
-                                                        facts.half_gap_standard_deviation,
-                                                        units.force));
+        const std::optional<double>& error = facts.half_gap_standard_deviation;
+        parts.push_back("half gap " + QuantityWithError(*facts.half_gap, error, units.force));
       }
       parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
       parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
