@@ -26,7 +26,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   // Rounding errors are no noise: nothing is to be learnt from what they look like.
   const double rms = std::sqrt(solution.sum_of_squares / static_cast<double>(data.counted));
   const bool is_rounding = rms < 10 * kRoundingRms;
-  Linearization at = LinearizeAt(problem, solution.theta, problem.parameters.free());
+  Linearization at = Response(problem).LinearizeAt(solution.theta, problem.parameters.free());
   const std::span<const double> residual = SpanOf(at.residual);
   Noise& noise = solved.noise;
   double widening = 1.0;

@@ -75,7 +75,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   FitWithWeights(problem, data, options, loop::DrawReadings(prepared).get(), solution, noise);
   solution.theta = theta;
   const Estimates estimates(problem, solution, noise, options,
-                            LinearizeAt(problem, theta, problem.parameters.free()));
+                            Response(problem).LinearizeAt(theta, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
   result.peak_force =

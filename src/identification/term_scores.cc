@@ -95,7 +95,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
     const bool is_inside = SideOf(fitted.parameters[p], theta[p]) == BoundSide::kInside;
     if (is_inside && was_free(fitted, p)) inside.push_back(p);
   }
-  const Linearization at = LinearizeAt(fitted, theta, inside);
+  const Linearization at = Response(fitted).LinearizeAt(theta, inside);
   const Evidence evidence = EvidenceOf(fitted, theta);
   std::vector<std::optional<TermScore>> scores;
   for (const TermChoice& choice : choices) {
@@ -110,7 +110,7 @@ std::vector<std::optional<TermScore>> ScoreTerms(std::span<const loop::RecordVie
         if (!is_other && !was_free(problem, p)) added.push_back(p);
       }
       if (added.empty()) continue;
-      const Linearization with = LinearizeAt(problem, ThetaOf(problem, fit), added);
+      const Linearization with = Response(problem).LinearizeAt(ThetaOf(problem, fit), added);
       score = ScoreColumns(problem, inside, at, evidence, added, with.jacobian);
     } catch (const InvalidArgument&) {
       continue;  // no lag where time does not go on

@@ -113,8 +113,8 @@ inline identification::Estimates EstimatesOf(Stages& stages,
                                              const identification::Solution& solution,
                                              const identification::Noise& noise) {
   return {stages.problem, solution, noise, stages.options,
-          identification::LinearizeAt(stages.problem, solution.theta,
-                                      stages.problem.parameters.free())};
+          identification::Response(stages.problem)
+              .LinearizeAt(solution.theta, stages.problem.parameters.free())};
 }
 
 /// White noise of a known variance [units of the data²].

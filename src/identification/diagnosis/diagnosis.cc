@@ -173,7 +173,7 @@ std::vector<Finding> FindContradicted(const Estimates& fitted, const FitResult& 
     const std::string name = problem.parameters.NameOf(p);
     const bool is_held = parameter.fixed && !is_described && options.fixed.contains(name);
     if (!is_held && (parameter.fixed || !parameter.has_prior())) continue;
-    Eigen::VectorXd own = LinearizeAt(problem, theta, {&p, 1}).jacobian.col(0);
+    Eigen::VectorXd own = Response(problem).LinearizeAt(theta, {&p, 1}).jacobian.col(0);
     own.conservativeResizeLike(Eigen::VectorXd::Zero(at.residual.size()));
     Eigen::MatrixXd others = at.jacobian;
     double off = 0.0;

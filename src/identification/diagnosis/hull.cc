@@ -61,7 +61,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
   const models::BranchLaw law = of_rig.LawAt(solution.theta);
   if (law.tangential_stiffness < fitted.thresholds().rigid_beside_rig * rig.stiffness) {
     const Estimates beside_rig(sprung.problem, solution, fitted.noise(), fitted.options(),
-                               LinearizeAt(sprung.problem, solution.theta, of_rig.free()));
+                               Response(sprung.problem).LinearizeAt(solution.theta, of_rig.free()));
     ParameterEstimates others = ValuesOf(sprung.problem, solution);
     for (std::size_t k = 0; k < others.size(); ++k) {
       ParameterEstimate& other = others[k];

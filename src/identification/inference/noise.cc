@@ -309,7 +309,7 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
 }
 
 Evidence EvidenceOf(const Problem& problem, std::span<const double> theta) {
-  Eigen::VectorXd residual = EvaluateResidual(problem, theta);
+  Eigen::VectorXd residual = Response(problem).LinearizeAt(theta, {}).residual;
   const auto least = static_cast<double>(problem.parameters.free().size() + 1);
   return {problem.data->counted,
           std::max(EffectiveSamples(*problem.data, SpanOf(residual)), least)};

@@ -342,15 +342,17 @@ void AddLinearTerms(const Problem& problem, std::span<const double> theta, doubl
   }
 }
 
-void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
-                            std::span<const double> theta, Eigen::Ref<Eigen::VectorXd> to) {
-  const Term& term = *problem.parameters[parameter].term;
-  if (term.is_linear) AddColumn(problem, parameter, theta, 1.0, to);
-  if (term.shapes.empty()) return;
-  for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
-    const Term& linear = *problem.parameters[q].term;
-    if (!linear.is_linear || !linear.name.starts_with(term.shapes)) continue;
-    AddColumn(problem, q, theta, theta[q], to, /*derivative=*/true);
+void AddDerivativesOfColumns(const Problem& problem, std::span<const std::size_t> parameters,
+                             std::span<const double> theta, Eigen::MatrixXd& columns) {
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Term& term = *problem.parameters[parameters[k]].term;
+    const auto column = columns.col(static_cast<Eigen::Index>(k));
+    if (term.is_linear) AddColumn(problem, parameters[k], theta, 1.0, column);
+    for (std::size_t q = 0; !term.shapes.empty() && q < problem.parameters.size(); ++q) {
+      const Term& linear = *problem.parameters[q].term;
+      if (!linear.is_linear || !linear.name.starts_with(term.shapes)) continue;
+      AddColumn(problem, q, theta, theta[q], column, /*derivative=*/true);
+    }
   }
 }
 
@@ -362,66 +364,49 @@ Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta) {
   return predicted;
 }
 
-Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta) {
-  const Eigen::VectorXd residual =
-      Predict(problem, theta) - problem.data->All(&ScaledRecord::response);
-  return residual.cwiseProduct(problem.data->All(&ScaledRecord::root_weight));
-}
-
-void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
-                           Response& response, std::span<const std::size_t> parameters,
-                           Eigen::VectorXd& t, Eigen::MatrixXd& columns) {
+void Response::Differentiate(std::span<const double> theta, std::span<const std::size_t> parameters,
+                             Eigen::VectorXd& t, Eigen::MatrixXd& columns) {
   // Each derivative of t is computed once, for however many parameters.
   std::map<TermId, Eigen::VectorXd> wanted;
   for (const std::size_t p : parameters) {
-    const ScaledRecord& any = problem.data->records.front();
-    for (const auto& [id, factor] : ChainRuleOf(problem, problem.parameters[p], any)) {
+    const ScaledRecord& any = problem_.data->records.front();
+    for (const auto& [id, factor] : ChainRuleOf(problem_, problem_.parameters[p], any)) {
       if (id != kItself) wanted[id].resize(t.size());
     }
   }
   ResponseColumns gradient;
   for (auto& [id, derivative] : wanted) gradient[id] = SpanOf(derivative);
-  response.Evaluate(theta, SpanOf(t), gradient);
+  Evaluate(theta, SpanOf(t), gradient);
   gradient[kItself] = SpanOf(t);
   columns.setZero(t.size(), std::ssize(parameters));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Parameter& parameter = problem.parameters[parameters[k]];
+    const Parameter& parameter = problem_.parameters[parameters[k]];
     const std::span<double> column = SpanOf(columns.col(static_cast<Eigen::Index>(k)));
-    for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-      const ScaledRecord& record = problem.data->records[r];
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      const ScaledRecord& record = problem_.data->records[r];
       if (!IsInRecord(parameter, r)) continue;
-      for (const auto& [id, factor] : ChainRuleOf(problem, parameter, record)) {
+      for (const auto& [id, factor] : ChainRuleOf(problem_, parameter, record)) {
         ArrayOf(record.Of(column)) += factor * ArrayOf(record.Of(gradient[id]));
       }
     }
   }
+  columns *= std::exp(LogScaleAt(problem_, theta));
 }
 
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> parameters, Response& response) {
+Linearization Response::LinearizeAt(std::span<const double> theta,
+                                    std::span<const std::size_t> parameters) {
   Linearization at;
-  at.residual.resize(static_cast<Eigen::Index>(problem.size()));
+  at.residual.resize(static_cast<Eigen::Index>(problem_.size()));
   // The residual is t until the rest is added, and what is measured taken off.
-  DifferentiateResponse(problem, theta, response, parameters, at.residual, at.jacobian);
-  const double scale = std::exp(LogScaleAt(problem, theta));
-  at.jacobian *= scale;
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    AddDerivativeOfColumns(problem, parameters[k], theta,
-                           at.jacobian.col(static_cast<Eigen::Index>(k)));
-  }
-  at.residual *= scale;
-  AddLinearTerms(problem, theta, 1.0, at.residual);
-  at.residual -= problem.data->All(&ScaledRecord::response);
-  const Eigen::ArrayXd weight = problem.data->All(&ScaledRecord::root_weight);
+  Differentiate(theta, parameters, at.residual, at.jacobian);
+  AddDerivativesOfColumns(problem_, parameters, theta, at.jacobian);
+  at.residual *= std::exp(LogScaleAt(problem_, theta));
+  AddLinearTerms(problem_, theta, 1.0, at.residual);
+  at.residual -= problem_.data->All(&ScaledRecord::response);
+  const Eigen::ArrayXd weight = problem_.data->All(&ScaledRecord::root_weight);
   at.residual.array() *= weight;
   at.jacobian.array().colwise() *= weight;
   return at;
-}
-
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> parameters) {
-  Response response(problem);
-  return LinearizeAt(problem, theta, parameters, response);
 }
 
 }  // namespace mindahl::identification

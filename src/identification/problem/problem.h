@@ -52,6 +52,12 @@ class ResponseColumns {
   std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> columns_;
 };
 
+/// A problem near one point.
+struct Linearization {
+  Eigen::MatrixXd jacobian;  // weighted
+  Eigen::VectorXd residual;  // weighted, model − measured
+};
+
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
 /// where a record is under one load, by the elements' (models/load_zones.h) where it varies. Of
 /// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
@@ -64,6 +70,14 @@ class Response {
 
   void Evaluate(std::span<const double> theta, std::span<double> t,
                 const ResponseColumns& columns = {});
+  /// Computes t and the derivatives of scale·t by parameters, without weights; those by linear ones
+  /// are 0.
+  /// @param t        of all samples
+  /// @param columns  a column a parameter; resized
+  void Differentiate(std::span<const double> theta, std::span<const std::size_t> parameters,
+                     Eigen::VectorXd& t, Eigen::MatrixXd& columns);
+  /// Returns the residual of the whole model and its derivatives by parameters.
+  Linearization LinearizeAt(std::span<const double> theta, std::span<const std::size_t> parameters);
   /// Returns where the contact of a record is.
   const Motion& MotionOf(std::size_t record, std::span<const double> theta);
 
@@ -93,9 +107,6 @@ class Response {
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
 Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta);
 
-/// Weighted residuals, model − measured, of every sample.
-Eigen::VectorXd EvaluateResidual(const Problem& problem, std::span<const double> theta);
-
 /// Adds a multiple of the column of a linear parameter, of every sample; no weight.
 /// @param theta       of all parameters: a column may depend on some (Term::shapes)
 /// @param derivative  adds the column's derivative by the parameter that shapes it instead
@@ -106,31 +117,11 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::span<const do
 void AddLinearTerms(const Problem& problem, std::span<const double> theta, double factor,
                     Eigen::VectorXd& to);
 
-/// Adds ∂(Σ θ_q·column_q)/∂θ by a parameter, of every sample, no weight: its own column where it is
-/// linear, else those of the columns that it shapes.
-/// @param theta  of all parameters, the linear ones included
-void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter,
-                            std::span<const double> theta, Eigen::Ref<Eigen::VectorXd> to);
-
-/// Computes t and the derivatives of scale·t by parameters over the scale, of all samples, without
-/// weights; those by linear ones are 0.
-/// @param t        of size()
-/// @param columns  a column a parameter; resized
-void DifferentiateResponse(const Problem& problem, std::span<const double> theta,
-                           Response& response, std::span<const std::size_t> parameters,
-                           Eigen::VectorXd& t, Eigen::MatrixXd& columns);
-
-/// A problem near one point.
-struct Linearization {
-  Eigen::MatrixXd jacobian;  // weighted
-  Eigen::VectorXd residual;  // weighted, model − measured
-};
-
-/// @param response    of the problem
-/// @param parameters  to differentiate by
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> parameters, Response& response);
-Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
-                          std::span<const std::size_t> parameters);
+/// Adds ∂(Σ θ_q·column_q)/∂θ by parameters, of every sample, no weight: the own column of a linear
+/// one, else those of the columns that it shapes.
+/// @param theta    of all parameters, the linear ones included
+/// @param columns  one a parameter
+void AddDerivativesOfColumns(const Problem& problem, std::span<const std::size_t> parameters,
+                             std::span<const double> theta, Eigen::MatrixXd& columns);
 
 }  // namespace mindahl::identification

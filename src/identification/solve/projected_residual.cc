@@ -143,14 +143,9 @@ double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
 
 double ProjectedResidual::Linearise(const Eigen::VectorXd& u) {
   MoveTo(u);
-  DifferentiateResponse(problem_, theta_, response_, searched_, response_values_, derivatives_);
+  response_.Differentiate(theta_, searched_, response_values_, derivatives_);
   const double cost = Regress(theta_);
-  derivatives_ *= scale_;
-  const std::vector<double> theta = Theta();
-  for (Eigen::Index j = 0; j < derivatives_.cols(); ++j) {
-    AddDerivativeOfColumns(problem_, searched_[static_cast<std::size_t>(j)], theta,
-                           derivatives_.col(j));
-  }
+  AddDerivativesOfColumns(problem_, searched_, Theta(), derivatives_);
   derivatives_.array().colwise() *= weight_.array();
   derivatives_ -= basis_ * (basis_.transpose() * derivatives_);
   gradient_ = derivatives_.transpose() * residual_;

@@ -52,7 +52,7 @@ class UnprojectedResidual final : public ceres::CostFunction {
     }
     Linearization at;
     try {
-      at = LinearizeAt(problem_, theta, wanted, response_);
+      at = response_.LinearizeAt(theta, wanted);
     } catch (const InvalidArgument&) {  // no law: exp(θ) is 0 or infinite
       return false;
     }
