@@ -7,44 +7,12 @@
 namespace mindahl::identification {
 namespace {
 
-// Default bounds, in units of the data (half ranges of displacement and force), far outside what a
-// record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a line.
 constexpr double kLowestStiffness = 1e-6;
 constexpr double kHighestStiffness = 1e9;
-constexpr double kLowestSlipForce = 1e-3;
-constexpr double kHighestSlipForce = 1e4;
-constexpr double kHighestShapeExponent = 20.0;
-// Longest lag, in cycles: a longer one is a filter or a clock of its own. Samples that near to the
-// ends of a record do not count under a lag that is fitted.
-constexpr double kLongestLag = 0.05;
-// The theories have exponents of the load between 0 and 1.
-constexpr double kLargestLoadExponent = 5.0;
-
-// Below the least exponent the force is as good as a slip force.
+// Below it the force is as good as a slip force.
 constexpr double kLeastSpeedExponent = 0.2;
-// Least exponent of a slip force: below it (v/v₀)^m − 1 is m·ln(v/v₀) within a tenth over two
-// decades of speed.
+// Below it (v/v₀)^m − 1 is m·ln(v/v₀) within a tenth over two decades of speed.
 constexpr double kLeastSlipSpeedExponent = 0.05;
-// With both the slip force stays positive over the whole stroke.
-constexpr double kLargestSlipChange = 0.5;
-// Largest change, over the slip force at v₀: at 1 there is none at rest, and below −1 it would more
-// than halve by v₀.
-constexpr double kLargestSlipBySpeed = 1.0;
-// Periods in half ranges of the displacement: the longest fits twice into a stroke.
-constexpr double kShortestPeriod = 0.01;
-constexpr double kLongestPeriod = 1.0;
-
-// Widest gap in half ranges of the displacement: half of a stroke.
-constexpr double kWidestGap = 1.0;
-
-// One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows twice as
-// large as the contact's, as branches of a contact are that was cycled.
-constexpr double kLargestAsymmetry = 0.8;
-
-constexpr TermScale kForceUnit{.force = 1};
-constexpr TermScale kLengthUnit{.length = 1};
-constexpr TermScale kStiffnessUnit{.force = 1, .length = -1};
-constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
 /// Makes the factor of a force in addition to the contact's.
 constexpr Term Factor(std::string_view name, std::string_view unit, std::string_view meaning,
@@ -58,13 +26,10 @@ constexpr Term Factor(std::string_view name, std::string_view unit, std::string_
           .is_never_negative = is_never_negative};
 }
 
-/// Makes a change of the slip force over the position or time.
+/// Makes a change of the slip force over the position or time. With both changes over the position
+/// the slip force stays positive over the whole stroke.
 constexpr Term SlipChange(std::string_view name, std::string_view meaning) {
-  return {.name = name,
-          .meaning = meaning,
-          .lowest = -kLargestSlipChange,
-          .highest = kLargestSlipChange,
-          .start = 0.0};
+  return {.name = name, .meaning = meaning, .lowest = -0.5, .highest = 0.5, .start = 0.0};
 }
 
 /// Makes an exponent of the speed, of a force that another term scales: its bounds are ends of the
@@ -83,6 +48,8 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
           .highest_is_of_theory = shapes.empty()};
 }
 
+/// Bounds are in units of the data (half ranges of displacement and force), far outside what a
+/// record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a line.
 constexpr std::array kTermRows = {
     Term{.name = "sigma",
          .unit = "N/m",
@@ -91,39 +58,43 @@ constexpr std::array kTermRows = {
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
-         .powers = kStiffnessUnit},
+         .powers = {.force = 1, .length = -1}},
     Term{.name = "alpha",
          .meaning = "α, shape exponent",
          .presence = Presence::kAlways,
          .lowest = 0.0,
-         .highest = kHighestShapeExponent,
+         .highest = 20.0,
          .lowest_is_of_theory = true},
     Term{.name = "slip_force",
          .unit = "N",
          .meaning = "Tc",
          .presence = Presence::kAlways,
          .positive = true,
-         .lowest = kLowestSlipForce,
-         .highest = kHighestSlipForce,
-         .powers = kForceUnit},
+         .lowest = 1e-3,
+         .highest = 1e4,
+         .powers = {.force = 1}},
     Term{.name = "rig_stiffness",
          .unit = "N/m",
          .meaning = "k of a spring in series, δ = x + T/k",
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
-         .powers = kStiffnessUnit},
+         .powers = {.force = 1, .length = -1}},
     Term{.name = "load_exponent",
          .meaning = "p of σ ∝ N^p, for records whose loads differ",
          .presence = Presence::kLoadSeries,
-         .lowest = -kLargestLoadExponent,
-         .highest = kLargestLoadExponent},
+         // The theories have exponents between 0 and 1.
+         .lowest = -5.0,
+         .highest = 5.0},
     Term{.name = "asymmetry",
          .meaning = "A of slip forces Tc(1 + A) where the displacement grows and Tc(1 − A) where "
                     "it falls; slip_force is their mean",
-         .lowest = -kLargestAsymmetry,
-         .highest = kLargestAsymmetry},
-    Factor("plateau_slope", "N/m", "slope of an additional force slope·δ", kStiffnessUnit),
+         // One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows
+         // twice as large as the contact's, as branches of a contact are that was cycled.
+         .lowest = -0.8,
+         .highest = 0.8},
+    Factor("plateau_slope", "N/m", "slope of an additional force slope·δ",
+           {.force = 1, .length = -1}),
     Factor("viscous", "N s/m", "C of an additional force C·dδ/dt",
            {.force = 1, .length = -1, .time = 1}, /*is_never_negative=*/true),
     Exponent("speed_exponent",
@@ -139,8 +110,9 @@ constexpr std::array kTermRows = {
     Term{.name = "slip_speed",
          .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
                     "third of the strokes, at which Tc is that of the fit",
-         .lowest = -kLargestSlipBySpeed,
-         .highest = kLargestSlipBySpeed,
+         // At 1 there is no slip force at rest, and below −1 it would more than halve by v₀.
+         .lowest = -1.0,
+         .highest = 1.0,
          .needs_time = true,
          .start = 0.3,
          .needs = "slip_speed_exponent",
@@ -168,26 +140,28 @@ constexpr std::array kTermRows = {
          .unit = "m",
          .meaning = "λ of a periodic force A±cos(2πδ/λ + φ±), one phase for each direction",
          .positive = true,
-         .lowest = kShortestPeriod,
-         .highest = kLongestPeriod,
-         .powers = kLengthUnit,
+         .lowest = 0.01,
+         .highest = 1.0,  // fits twice into a stroke
+         .powers = {.length = 1},
          .start = 0.0,
          .shapes = "ripple_",
          .needs = "ripple_cosine_up"},
     Factor("ripple_cosine_up", "N",
            "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the first "
            "record",
-           kForceUnit),
-    Factor("ripple_sine_up", "N", "factor of sin(2πδ/λ), likewise", kForceUnit),
+           {.force = 1}),
+    Factor("ripple_sine_up", "N", "factor of sin(2πδ/λ), likewise", {.force = 1}),
     Factor("ripple_cosine_down", "N", "factor of cos(2πδ/λ) where the displacement falls",
-           kForceUnit),
-    Factor("ripple_sine_down", "N", "factor of sin(2πδ/λ), likewise", kForceUnit),
+           {.force = 1}),
+    Factor("ripple_sine_down", "N", "factor of sin(2πδ/λ), likewise", {.force = 1}),
     Term{.name = "lag",
          .unit = "s",
          .meaning = "delay of the contact's force after the displacement, negative if before it; "
                     "in samples where the record has no time",
-         .lowest = -kLongestLag,
-         .highest = kLongestLag,
+         // A longer one is a filter or a clock of its own. Samples that near to the ends of a
+         // record do not count under a lag that is fitted.
+         .lowest = -0.05,
+         .highest = 0.05,
          .powers = {.cycle = 1},
          .motion = ContactMotion::kLate,
          .unit_by_sample = "samples"},
@@ -196,8 +170,8 @@ constexpr std::array kTermRows = {
         .unit = "m",
         .meaning = "g, width of a gap before the contact, which bears no force while it is crossed",
         .lowest = 0.0,
-        .highest = kWidestGap,
-        .powers = kLengthUnit,
+        .highest = 1.0,  // half of a stroke
+        .powers = {.length = 1},
         .motion = ContactMotion::kBehindGap,
         .lowest_is_of_theory = true},
     Term{.name = "covariate",
@@ -206,29 +180,26 @@ constexpr std::array kTermRows = {
                     "`covariate_COLUMN`, with _ for blanks and signs; N/ the column's unit where "
                     "the header has one. force_offset is then its value in the middle of the "
                     "column's range",
-         .powers = kFileForceUnit,
+         .powers = {.force = 1, .of_file = true},
          .is_linear = true,
          .of_column = true},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "force added to the model's; with a drift, its value at the record's middle",
-         .is_of_record = true,
          .presence = Presence::kOffsets,
-         .powers = kFileForceUnit,
+         .powers = {.force = 1, .of_file = true},
          .is_linear = true},
     Term{
         .name = "displacement_offset",
         .unit = "m",
         .meaning = "position at which a virgin contact is unloaded; for a steady loop its centre, "
                    "taken from the data",
-        .is_of_record = true,
         .presence = Presence::kOffsets,
-        .powers = kLengthUnit,
+        .powers = {.length = 1},
     },
     Term{.name = "force_drift",
          .unit = "N/s",
          .meaning = "rate of a force linear in time; in N a sample where the record has no time",
-         .is_of_record = true,
          .presence = Presence::kReported,
          .powers = {.force = 1, .time = -1, .of_file = true},
          .is_linear = true,
@@ -237,7 +208,6 @@ constexpr std::array kTermRows = {
          .unit = "m/s",
          .meaning = "rate of a displacement linear in time, where the displacement is fitted; in m "
                     "a sample where the record has no time",
-         .is_of_record = true,
          .presence = Presence::kNever,
          .powers = {.length = 1, .time = -1},
          .is_linear = true,
@@ -246,7 +216,10 @@ constexpr std::array kTermRows = {
 
 constexpr auto kTerms = [] {
   auto terms = kTermRows;
-  for (std::size_t i = 0; i < terms.size(); ++i) terms[i].id = static_cast<TermId>(i);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    terms[i].id = static_cast<TermId>(i);
+    terms[i].is_of_record = terms[i].id >= TermId::kForceOffset;
+  }
   return terms;
 }();
 static_assert(kTerms.back().id == TermId::kDisplacementDrift);
@@ -255,13 +228,11 @@ static_assert(kTerms.back().id == TermId::kDisplacementDrift);
 constexpr auto kTermsOfDisplacement = [] {
   auto terms = kTerms;
   for (Term& term : terms) {
-    if (term.id == TermId::kForceOffset) {
-      term.is_linear = false;
-    } else if (term.id == TermId::kDisplacementOffset) {
-      term.is_linear = true;
-    } else if (term.id == TermId::kDisplacementDrift) {
+    const bool is_offset = term.presence == Presence::kOffsets;
+    term.is_linear = term.is_linear != is_offset;  // the other channel's
+    if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
-    } else if (term.id > TermId::kSlipForce && term.id != TermId::kLoadExponent) {
+    } else if (term.id > TermId::kSlipForce && term.id != TermId::kLoadExponent && !is_offset) {
       term.presence = Presence::kNever;
     }
   }
