@@ -141,6 +141,65 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   return parameter;
 }
 
+/// Refuses a term without the one or the time that it needs, and a second one that moves the
+/// contact.
+void RequireTerms(const ScaledRecords& data, const Parameters& parameters) {
+  const bool is_timed = std::ranges::none_of(
+      data.records, [](const ScaledRecord& record) { return record.velocity.empty(); });
+  const std::size_t moving = parameters.PositionOfMotion();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Term& term = *parameters[p].term;
+    if (parameters[p].absent) continue;
+    if (term.needs_time && !is_timed) {
+      throw InvalidArgument(
+          fmt::format("{} needs the time of every sample in every record", term.name));
+    }
+    if (!term.needs.empty() && parameters[parameters.PositionOf(FindTerm(term.needs)->id)].absent) {
+      throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
+    }
+    if (p > moving && term.motion != ContactMotion::kMeasured) {
+      throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
+                                        parameters[moving].term->name, term.name));
+    }
+  }
+}
+
+/// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
+void HoldConfounded(Parameter& asymmetry, std::span<const Parameter> parameters) {
+  const bool any_zero_is_known = std::ranges::any_of(parameters, [](const Parameter& parameter) {
+    return parameter.term->id == TermId::kForceOffset && parameter.fixed;
+  });
+  if (asymmetry.fixed || any_zero_is_known) return;
+  asymmetry.theta = 0.0;
+  asymmetry.fixed = asymmetry.confounded = true;
+}
+
+/// Bounds α: under a load that varies slip must be complete at a finite displacement.
+void KeepBelowOne(Parameter& shape) {
+  constexpr double kHighest = 0.99;  // beyond it that exceeds a hundred times Tc/σ
+  shape.upper = std::min(shape.upper, kHighest);
+  const double lowest = shape.fixed ? shape.theta : shape.lower;
+  if (lowest < shape.upper) return;
+  ThrowInvalid("alpha [-]", lowest,
+               "must be below 0.99 where the normal load varies, or keep to one load with --select "
+               "load=LO:HI");
+}
+
+/// Bounds Tc, and begins with it, where the force is imposed: below the largest force of a steady
+/// loop it has no loop.
+void KeepAboveLoops(const ScaledRecords& data, Parameter& slip_force) {
+  constexpr double kShortOfSlip = 1e-9;
+  if (slip_force.fixed) return;
+  for (const ScaledRecord& record : data.records) {
+    const auto [low, high] = std::ranges::minmax(record.excitation());
+    const double least = std::log((high - low) / 2) + kShortOfSlip;
+    if (!(least > slip_force.lower)) continue;
+    slip_force.lower = std::min(least, slip_force.upper);
+    slip_force.theta = std::max(slip_force.theta, slip_force.lower);
+    slip_force.lower_is_of_theory = true;
+  }
+}
+
 }  // namespace
 
 void RequirePlace(const Term& term, loop::Channel response) {
@@ -156,14 +215,6 @@ bool HasTerm(const FitOptions& options, std::string_view name) {
 }
 
 bool HasTerm(const FitOptions& options, TermId id) { return HasTerm(options, TermOf(id).name); }
-
-double Parameter::ToValue(double at_theta) const {
-  return term->positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
-}
-
-double Parameter::ToTheta(double value) const {
-  return term->positive ? std::log(value / scale) : (value - reference) / scale;
-}
 
 BoundSide SideOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return BoundSide::kInside;
@@ -207,74 +258,12 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   const bool is_masing = options.model->memory == models::Memory::kReturnPoint;
   ApplyLimits(options, is_steady);
-  if (is_masing && data.load_varies) KeepShapeBelowOne();
+  if (is_masing && data.load_varies) KeepBelowOne(parameters_[kShape]);
   ApplyGuesses(options, data.prior_noise);
-  if (data.is_forced() && is_steady) KeepSlipForceAboveLoops(data);
-  RequireTerms(data);
-  if (is_masing && is_steady) HoldConfoundedAsymmetry();
+  if (data.is_forced() && is_steady) KeepAboveLoops(data, parameters_[kSlipForce]);
+  RequireTerms(data, *this);
+  if (is_masing && is_steady) HoldConfounded(parameters_[kAsymmetry], parameters_);
   Sort();
-}
-
-/// Refuses a term without the one or the time that it needs, and a second one that moves the
-/// contact.
-void Parameters::RequireTerms(const ScaledRecords& data) const {
-  const bool is_timed = std::ranges::none_of(
-      data.records, [](const ScaledRecord& record) { return record.velocity.empty(); });
-  const std::size_t moving = PositionOfMotion();
-  for (std::size_t p = 0; p < size(); ++p) {
-    const Term& term = *parameters_[p].term;
-    if (parameters_[p].absent) continue;
-    if (term.needs_time && !is_timed) {
-      throw InvalidArgument(
-          fmt::format("{} needs the time of every sample in every record", term.name));
-    }
-    if (!term.needs.empty() && parameters_[PositionOf(FindTerm(term.needs)->id)].absent) {
-      throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
-    }
-    if (p > moving && term.motion != ContactMotion::kMeasured) {
-      throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
-                                        parameters_[moving].term->name, term.name));
-    }
-  }
-}
-
-/// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
-void Parameters::HoldConfoundedAsymmetry() {
-  Parameter& asymmetry = parameters_[kAsymmetry];
-  const bool any_zero_is_known = std::ranges::any_of(parameters_, [](const Parameter& parameter) {
-    return parameter.term->id == TermId::kForceOffset && parameter.fixed;
-  });
-  if (asymmetry.fixed || any_zero_is_known) return;
-  asymmetry.theta = 0.0;
-  asymmetry.fixed = asymmetry.confounded = true;
-}
-
-/// Bounds α: under a load that varies slip must be complete at a finite displacement.
-void Parameters::KeepShapeBelowOne() {
-  constexpr double kHighest = 0.99;  // beyond it that exceeds a hundred times Tc/σ
-  Parameter& shape = parameters_[kShape];
-  shape.upper = std::min(shape.upper, kHighest);
-  const double lowest = shape.fixed ? shape.theta : shape.lower;
-  if (lowest < shape.upper) return;
-  ThrowInvalid("alpha [-]", lowest,
-               "must be below 0.99 where the normal load varies, or keep to one load with --select "
-               "load=LO:HI");
-}
-
-/// Bounds Tc, and begins with it, where the force is imposed: below the largest force of a steady
-/// loop it has no loop.
-void Parameters::KeepSlipForceAboveLoops(const ScaledRecords& data) {
-  constexpr double kShortOfSlip = 1e-9;
-  Parameter& slip_force = parameters_[kSlipForce];
-  if (slip_force.fixed) return;
-  for (const ScaledRecord& record : data.records) {
-    const auto [low, high] = std::ranges::minmax(record.excitation());
-    const double least = std::log((high - low) / 2) + kShortOfSlip;
-    if (!(least > slip_force.lower)) continue;
-    slip_force.lower = std::min(least, slip_force.upper);
-    slip_force.theta = std::max(slip_force.theta, slip_force.lower);
-    slip_force.lower_is_of_theory = true;
-  }
 }
 
 void Parameters::Sort() {
@@ -287,12 +276,12 @@ void Parameters::Sort() {
 }
 
 std::size_t Parameters::PositionOf(TermId id, std::size_t record) const {
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const Parameter& parameter = parameters_[i];
-    if (parameter.term->id != id) continue;
-    if (!parameter.term->is_of_record || parameter.record == record) return i;
-  }
-  return parameters_.size();
+  const auto is_there = [&](const Parameter& parameter) {
+    const Term& term = *parameter.term;
+    return term.id == id && (!term.is_of_record || parameter.record == record);
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(parameters_, is_there) -
+                                  parameters_.begin());
 }
 
 std::size_t Parameters::PositionOfMotion() const {
@@ -428,10 +417,6 @@ models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
   return {.tangential_stiffness = parameters_[kStiffness].ToValue(theta[kStiffness]),
           .shape_exponent = theta[kShape],
           .slip_force = parameters_[kSlipForce].ToValue(theta[kSlipForce])};
-}
-
-double Parameters::LoadExponentAt(std::span<const double> theta) const {
-  return is_load_series() ? theta[kLoadExponent] : 1.0;
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

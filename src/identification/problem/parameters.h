@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -52,8 +53,12 @@ struct Parameter {
   [[nodiscard]] bool is_open() const { return !fixed && !has_prior(); }
   /// Returns θ moved into the bounds.
   [[nodiscard]] double Clamp(double at_theta) const { return std::clamp(at_theta, lower, upper); }
-  [[nodiscard]] double ToValue(double at_theta) const;
-  [[nodiscard]] double ToTheta(double value) const;
+  [[nodiscard]] double ToValue(double at_theta) const {
+    return term->positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
+  }
+  [[nodiscard]] double ToTheta(double value) const {
+    return term->positive ? std::log(value / scale) : (value - reference) / scale;
+  }
   [[nodiscard]] bool is_exponent() const { return term->name.ends_with("_exponent"); }
 };
 
@@ -114,8 +119,6 @@ class Parameters {
   /// Returns the place of the term that moves the contact away from the displacement at the time of
   /// the force, of which there is one at most; size() where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
-  /// True if the records are under loads that differ.
-  [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
   /// Returns the name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
@@ -129,17 +132,15 @@ class Parameters {
   /// σ, α, Tc in SI.
   [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
   /// p of σ ∝ N^p; 1 where the records are under one load.
-  [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const;
+  [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const {
+    return parameters_[kLoadExponent].absent ? 1.0 : theta[kLoadExponent];
+  }
   /// Returns the spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
   void ApplyLimits(const FitOptions& options, bool is_steady);
   void ApplyGuesses(const FitOptions& options, double prior_noise);
-  void RequireTerms(const ScaledRecords& data) const;
-  void HoldConfoundedAsymmetry();
-  void KeepShapeBelowOne();
-  void KeepSlipForceAboveLoops(const ScaledRecords& data);
   void Sort();
   /// @param what  it is, in a message
   [[nodiscard]] Parameter& Find(std::string_view name, std::string_view what);
