@@ -8,6 +8,9 @@ namespace mindahl {
 struct Extremes {
   double least = 0.0;
   double greatest = 0.0;
+
+  [[nodiscard]] double half_range() const { return greatest / 2 - least / 2; }
+  [[nodiscard]] double middle() const { return least + half_range(); }
 };
 
 /// Returns the least and greatest of values that are no NaN, at least one.

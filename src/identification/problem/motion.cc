@@ -243,17 +243,18 @@ double TurnBetweenSamples(ScaledRecords& data) {
   return farthest;
 }
 
-double LongestLag(double samples_a_cycle) {
+double LongestLag(std::size_t samples, std::size_t reversals) {
   constexpr double kSamples = 10.0;
   constexpr double kLongest = 0.2;
-  return std::clamp(kSamples / samples_a_cycle, TermOf(TermId::kLag).highest, kLongest);
+  return std::clamp(kSamples / MeanCycleDuration({}, samples, reversals),
+                    TermOf(TermId::kLag).highest, kLongest);
 }
 
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
   if (!HasTerm(options, TermId::kLag) || records.excitation == loop::Channel::kForce) return;
   const loop::PreparedRecord& first = records.records.front();
   const std::size_t reversals = first.reversals.size();
-  const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
+  const double longest = LongestLag(first.size(), reversals) *
                          MeanCycleDuration(first.record.time, first.size(), reversals);
   Interval lags{-longest, longest};
   if (options.bounds.contains("lag")) lags = options.bounds.at("lag");

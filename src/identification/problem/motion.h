@@ -24,7 +24,7 @@ double TurnBetweenSamples(ScaledRecords& data);
 
 /// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
 /// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.
-double LongestLag(double samples_a_cycle);
+double LongestLag(std::size_t samples, std::size_t reversals);
 
 /// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
 /// not count; they still make history.

@@ -121,7 +121,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   parameter.lower = term.positive ? std::log(term.lowest) : term.lowest;
   parameter.upper = term.positive ? std::log(term.highest) : term.highest;
   if (term.id == TermId::kLag) {
-    parameter.upper = LongestLag(MeanCycleDuration({}, data.size(), data.reversals.size()));
+    parameter.upper = LongestLag(data.size(), data.reversals.size());
     parameter.lower = -parameter.upper;
   }
   const bool is_asked_for = std::ranges::find(options.terms, term.name) != options.terms.end();

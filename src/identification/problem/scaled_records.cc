@@ -36,22 +36,10 @@ bool AreOneChannel(std::span<const double> one, std::span<const double> other) {
 
 namespace {
 
-struct ColumnRange {
-  double middle;
-  double half;
-};
-
-ColumnRange RangeOf(std::span<const double> values) {
-  const auto [lowest, highest] = ExtremesOf(values);
-  const double half = highest / 2 - lowest / 2;
-  return {lowest + half, half};
-}
-
 /// Returns (x − reference)/unit of values x.
 std::vector<double> Scaled(std::span<const double> values, double reference, double unit) {
-  std::vector<double> scaled(values.size());
-  std::ranges::transform(values, scaled.begin(),
-                         [&](double value) { return (value - reference) / unit; });
+  std::vector<double> scaled(values.begin(), values.end());
+  for (double& value : scaled) value = (value - reference) / unit;
   return scaled;
 }
 
@@ -62,7 +50,7 @@ void RequireScale(std::string_view quantity, double half_range) {
 }
 
 /// Central differences by time, one-sided at the ends and where time stands still.
-/// @param unit  of time [s], the same for all records: their derivatives have one factor
+/// @param unit  of time [s], the same for all records
 std::vector<double> DerivativeOf(const std::vector<double>& values, const ScaledRecord& record,
                                  double unit) {
   const double units = record.units.half_duration / unit;
@@ -87,9 +75,8 @@ void FillLogSpeed(ScaledRecord& record) {
   constexpr double kStandstill = 1e-12;  // of the largest speed
   const double fastest = std::max(-lowest, highest);
   const double least = fastest > 0 ? kStandstill * fastest : 1.0;
-  record.log_speed.resize(record.size());
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.log_speed[i] = std::log(std::max(std::hypot(record.velocity[i], resolution), least));
+  for (const double speed : record.velocity) {
+    record.log_speed.push_back(std::log(std::max(std::hypot(speed, resolution), least)));
   }
 }
 
@@ -110,14 +97,6 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
   return sum > 0 ? sum / path : 1.0;
 }
 
-/// True if the law models a load that varies. The displacement is then that of the contact alone;
-/// of Masing's law it is read with the force, and slip is as easy in either direction.
-bool KnowsVaryingLoads(const FitOptions& options, bool is_joint) {
-  const auto has = [&](TermId id) { return HasTerm(options, id); };
-  return !has(TermId::kRigStiffness) && !has(TermId::kBacklash) &&
-         (is_joint || (!has(TermId::kLag) && !has(TermId::kAsymmetry)));
-}
-
 /// Takes the loads within a record from their column.
 /// @returns their mean over the samples that count [N]
 double TakeVaryingLoad(const loop::PreparedRecord& record, const FitOptions& options,
@@ -133,7 +112,11 @@ double TakeVaryingLoad(const loop::PreparedRecord& record, const FitOptions& opt
   const double amplitude = std::sqrt(2 * std::max(variance, 0.0));  // of a sine
   // The force of Dahl's own law follows a load of either sign (models/joint_friction.h).
   const bool is_joint = options.model->memory == models::Memory::kNone;
-  const bool is_known = KnowsVaryingLoads(options, is_joint);
+  // The law models a load that varies if the displacement is that of the contact alone; of Masing's
+  // law it is read with the force, and slip is as easy in either direction.
+  const auto has = [&](TermId id) { return HasTerm(options, id); };
+  const bool is_known = !has(TermId::kRigStiffness) && !has(TermId::kBacklash) &&
+                        (is_joint || (!has(TermId::kLag) && !has(TermId::kAsymmetry)));
   const bool has_sign = is_joint && is_known;
   const double mean = has_sign ? load.abs().mean() : load.mean();
   const bool varies =
@@ -202,13 +185,14 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
             fmt::format("record {} has no covariate '{}'", columns.size() + 1, name));
       }
       columns.push_back(&*found);
-      scale = std::max(scale, RangeOf(found->values).half);
+      scale = std::max(scale, ExtremesOf(found->values).half_range());
     }
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
     const std::size_t own = data.covariates.size();
     data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
     for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const double reference_value = options.offsets ? RangeOf(columns[r]->values).middle : 0.0;
+      const double reference_value =
+          options.offsets ? ExtremesOf(columns[r]->values).middle() : 0.0;
       data.records[r].covariates.push_back(Scaled(columns[r]->values, reference_value, scale));
     }
     if (options.fixed.contains(NameOfCovariate(name))) continue;
@@ -279,16 +263,15 @@ ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, c
   scaled.length = scaled.force = 0.0;
   scaled.counted = records.counted();
   for (const loop::PreparedRecord& record : records.records) {
-    scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
-    scaled.force = std::max(scaled.force, RangeOf(record.force()).half);
+    scaled.length = std::max(scaled.length, ExtremesOf(record.displacement()).half_range());
+    scaled.force = std::max(scaled.force, ExtremesOf(record.force()).half_range());
   }
   RequireScale("half range of the displacement [m]", scaled.length);
   RequireScale("half range of the force [N]", scaled.force);
   const double sense = records.force_sense;
   for (const loop::PreparedRecord& prepared : records.records) {
     const std::span<const double> displacement = prepared.displacement();
-    std::vector<double> force(prepared.force().begin(), prepared.force().end());
-    for (double& value : force) value *= sense;
+    const double force_reference = ExtremesOf(prepared.force()).middle();
     std::vector<double> time(prepared.record.time.begin(), prepared.record.time.end());
     const bool is_timed = !time.empty();
     while (time.size() < prepared.size()) time.push_back(static_cast<double>(time.size()));
@@ -310,10 +293,10 @@ ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, c
                     .half_duration = duration > 0 ? duration / 2 : 1.0,
                     .cycle = MeanCycleDuration(time, time.size(), prepared.reversals.size()),
                     .force_sense = sense,
-                    .force_reference = sense * RangeOf(prepared.force()).middle,
-                    .displacement_reference = RangeOf(displacement).middle};
+                    .force_reference = sense * force_reference,
+                    .displacement_reference = ExtremesOf(displacement).middle()};
     target.displacement = Scaled(displacement, target.units.displacement_reference, scaled.length);
-    target.force = Scaled(force, target.units.force_reference, scaled.force);
+    target.force = Scaled(prepared.force(), force_reference, sense * scaled.force);
     target.time = Scaled(time, time.front(), target.units.half_duration);
     for (double& value : target.time) value -= 1;
     target.root_weight.assign(prepared.counts.begin(), prepared.counts.end());
@@ -352,20 +335,16 @@ std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& th
 
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals) {
-  std::vector<double> directions(excitation.size());
+  std::vector<double> directions;
   for (const Stroke& stroke : StrokesOf(excitation, reversals)) {
-    for (std::size_t i = stroke.begin == 0 ? 0 : stroke.begin + 1; i <= stroke.end; ++i) {
-      directions[i] = stroke.direction;
-    }
+    directions.resize(stroke.end + 1, stroke.direction);
   }
   return directions;
 }
 
 ScaledRecords Thinned(const ScaledRecords& data) {
-  // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)³.
-  constexpr double kKeptOfAStroke = 10.0;
-  // Cycles that are thinned so, spread over the record: others to their ends and one sample
-  // between.
+  constexpr double kKeptOfAStroke = 10.0;  // samples, at growing fractions of its travel: (k/n)³
+  // Cycles of which so many are kept, spread over the record; of others the ends and one between.
   constexpr std::size_t kDenseCycles = 8;
   ScaledRecords thinned = data;
   thinned.counted = 0;
