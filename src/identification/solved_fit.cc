@@ -78,7 +78,7 @@ SolvedFit FitBestState(const Attempt& attempt) {
   };
   std::vector<Candidate> candidates;
   for (const InitialState state : StatesToTry(attempt)) {
-    candidates.emplace_back(attempt.data, options, state);
+    candidates.push_back({.problem = {attempt.data, options, state}});
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }
   if (GiveEnergy(options, attempt.prepared)) {

@@ -39,7 +39,7 @@ class Stages {
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
     const identification::ScaledRecords thin = identification::Thinned(data);
-    identification::Candidate candidate(data, options, problem.initial_state);
+    identification::Candidate candidate{.problem = {data, options, problem.initial_state}};
     identification::FindStartsOf(candidate, thin, options);
     identification::Descend(candidate, options);
     return candidate.solution;

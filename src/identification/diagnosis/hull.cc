@@ -44,7 +44,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlinShapeExponent;
   with_rig.start.clear();
-  Candidate sprung(*problem.data, with_rig, problem.initial_state);
+  Candidate sprung{.problem = {*problem.data, with_rig, problem.initial_state}};
   // A rig as stiff as the fitted contact, before one ten times stiffer, with the terms that it has.
   std::vector<double> beside = best.theta;
   beside[kRig] = best.theta[kStiffness] + std::log(1 / (1 - kStiffer));

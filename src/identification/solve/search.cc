@@ -168,19 +168,6 @@ void LookForLag(Solver& solver, Look& best) {
   }
 }
 
-/// Returns the thinned records, which have the history of the whole; all samples where fewer than
-/// four a parameter are left, where a covariate could explain so few by itself, and of α = 0, of
-/// which the cost has a kink wherever a sample begins to slip.
-const ScaledRecords& RecordsOfLooks(const Problem& problem, bool has_kinks,
-                                    const ScaledRecords& thinned) {
-  constexpr std::size_t kEnough = 4;  // samples a parameter
-  const Parameters& parameters = problem.parameters;
-  const bool has_covariate = std::ranges::any_of(
-      parameters.free(), [&](std::size_t p) { return parameters[p].term->of_column; });
-  const bool is_enough = thinned.counted >= kEnough * parameters.free().size();
-  return is_enough && !has_covariate && !has_kinks ? thinned : *problem.data;
-}
-
 /// Searches from θ, and keeps the solution where it is better.
 void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
                 Solution& best) {
@@ -237,16 +224,19 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
 
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const FitOptions& options) {
   const Problem& problem = candidate.problem;
+  const Parameters& parameters = problem.parameters;
+  const std::vector<std::size_t>& free = parameters.free();
   candidate.starts.clear();
   // A start from the options that leaves nothing to be looked for.
-  const bool is_given = std::ranges::all_of(problem.parameters.free(), [&](std::size_t p) {
-    const Parameter& parameter = problem.parameters[p];
-    return parameter.started_by_user || parameter.term->is_linear || parameter.term->start;
+  const bool is_given = std::ranges::all_of(free, [&](std::size_t p) {
+    const Term& term = *parameters[p].term;
+    return parameters[p].started_by_user || term.is_linear || term.start;
   });
   if (!options.start.empty() && is_given) {
-    candidate.starts.push_back(problem.parameters.Theta());
+    candidate.starts.push_back(parameters.Theta());
     return 0.0;
   }
+  constexpr std::size_t kEnough = 4;  // samples a parameter
   constexpr std::size_t kStartsAmongKinks = 4;
   constexpr double kSmooth = 1.0;  // α
   constexpr double kClearly = 0.98;
@@ -257,28 +247,28 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
                                  .is_rough = true};
   // With α held at 0 the likelihood has a kink wherever a sample begins to slip, and minima next to
   // each other.
-  const Parameter& shape = problem.parameters[kShape];
+  const Parameter& shape = parameters[kShape];
   const bool has_kinks = shape.fixed && shape.theta == 0;
-  const ScaledRecords& data = RecordsOfLooks(problem, has_kinks, thinned);
+  // The thinned records have the history of the whole, but too few samples for many parameters, or
+  // for a covariate, which could explain so few by itself.
+  const bool has_covariate =
+      std::ranges::any_of(free, [&](std::size_t p) { return parameters[p].term->of_column; });
+  const bool is_enough = thinned.counted >= kEnough * free.size();
   Problem thin = problem;
-  thin.data = &data;
+  if (is_enough && !has_covariate && !has_kinks) thin.data = &thinned;
   Solver solver(thin);
   std::vector<Look> looks = BestLooks(solver);
   for (Look& look : looks) LookForLag(solver, look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
-  const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
-    return thin.parameters[p].term->presence == Presence::kOnDemand;
-  });
+  const bool bent = std::ranges::any_of(
+      free, [&](std::size_t p) { return parameters[p].term->presence == Presence::kOnDemand; });
   const std::size_t most = has_kinks ? kStartsAmongKinks : 1;
-  std::vector<Look> starts;
-  for (Look& look : looks) {
-    if (!bent && starts.size() >= most) break;
-    for (const std::size_t p : thin.parameters.free()) {
-      const Parameter& parameter = thin.parameters[p];
-      if (parameter.started_by_user) look.theta[p] = parameter.theta;
+  if (!bent && looks.size() > most) looks.resize(most);
+  for (Look& start : looks) {
+    for (const std::size_t p : free) {
+      if (parameters[p].started_by_user) start.theta[p] = parameters[p].theta;
     }
-    Look& start = starts.emplace_back(std::move(look));
     if (!options.start.empty()) continue;  // a start that is given is one
     const auto follow = [&](const std::vector<double>& theta, double share_of_cost) {
       Solution solution = solver.Solve(theta, kRough);
@@ -294,10 +284,10 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     smooth[kShape] = std::min(kSmooth, shape.upper);
     follow(smooth, kClearly);
   }
-  std::ranges::stable_sort(starts, {}, &Look::cost);
-  if (starts.size() > most) starts.resize(most);
-  for (Look& start : starts) candidate.starts.push_back(std::move(start.theta));
-  return starts.empty() ? kNoCost : starts.front().cost;
+  std::ranges::stable_sort(looks, {}, &Look::cost);
+  if (looks.size() > most) looks.resize(most);
+  for (Look& start : looks) candidate.starts.push_back(std::move(start.theta));
+  return looks.empty() ? kNoCost : looks.front().cost;
 }
 
 SolverOptions SolverOptionsOf(const FitOptions& options) {
@@ -333,7 +323,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
 
 void Descend(Candidate& candidate, const FitOptions& options) {
   Solution& best = candidate.solution;
-  best = {.sum_of_squares = std::numeric_limits<double>::infinity()};
+  best = {.sum_of_squares = kNoCost};
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
   Solver solver(candidate.problem);
@@ -352,7 +342,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options) {
   SolverOptions look = search;
   look.max_iterations = std::min(search.max_iterations, kSteps);
   Solver solver(candidate.problem);
-  double last = std::numeric_limits<double>::infinity();
+  double last = kNoCost;
   for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {
     last = kLower * best.sum_of_squares;
     Solution lower = best;

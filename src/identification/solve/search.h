@@ -10,10 +10,6 @@ namespace mindahl::identification {
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options,
-            models::InitialState initial_state)
-      : problem(data, options, initial_state) {}
-
   Problem problem;
   std::vector<std::vector<double>> starts = {};  // θ of all parameters
   Solution solution = {};
