@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/draws.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
@@ -28,24 +29,23 @@ struct Case {
   contact::MindlinContact contact;
   double lambda = 0.0;
   double direction = 1.0;
-  models::ExcitationOptions excitation;
+  models::ExcitationOptions excitation = {};
 };
 
 Case DrawCase(std::size_t index, Draws& draws) {
-  Case drawn;
-  drawn.friction_coefficient = draws.Uniform(0.05, 1.2);
-  drawn.normal_load = draws.LogUniform(1e-6, 1e5);
-  drawn.contact.contact_radius = draws.LogUniform(1e-8, 3e-2);
-  drawn.contact.tangential_compliance = draws.LogUniform(1e-12, 1e-8);
-  drawn.contact.slip_force = contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
-  drawn.lambda = kLambdas[index % kLambdas.size()];
   const std::size_t round = index / kLambdas.size();
-  drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
-  drawn.excitation.waveform =
-      round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle;
-  drawn.excitation.cycles = kCycles[round % kCycles.size()];
-  drawn.excitation.samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()];
-  drawn.excitation.amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact);
+  Case drawn{.friction_coefficient = draws.Uniform(0.05, 1.2),
+             .normal_load = draws.LogUniform(1e-6, 1e5),
+             .contact = {.contact_radius = draws.LogUniform(1e-8, 3e-2),
+                         .tangential_compliance = draws.LogUniform(1e-12, 1e-8)},
+             .lambda = kLambdas[index % kLambdas.size()],
+             .direction = round % 2 == 0 ? 1.0 : -1.0};
+  drawn.contact.slip_force = contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
+  drawn.excitation = {
+      .waveform = round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle,
+      .amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact),
+      .cycles = kCycles[round % kCycles.size()],
+      .samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()]};
   return drawn;
 }
 
@@ -68,43 +68,39 @@ Record MindlinRecord(const Case& drawn) {
   return record;
 }
 
-/// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
-/// unlike an error over a standard error it also holds where the likelihood is not a parabola.
-double StandardizedDistance(const Record& record, const models::BranchLaw& truth,
-                            const FitResult& fit) {
-  FitOptions options;
-  options.initial_state = fit.initial_state;
-  options.fixed = {{"sigma", truth.tangential_stiffness},
-                   {"alpha", truth.shape_exponent},
-                   {"slip_force", truth.slip_force}};
-  const FitResult at_truth = Fit({&record, 1}, options, Depth::kEstimate);
-  const double ratio = at_truth.rms / fit.rms;
-  return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.degrees_of_freedom);
-}
-
 /// Compares a fit with the truth and adds it to its row.
 /// @returns what misses the tolerance; empty where nothing does
-std::string Add(const Record& record, const models::BranchLaw& truth, const FitResult& fit,
+std::string Add(const Record& record, const models::BranchLaw& law, const FitResult& fit,
                 ValidationRow& row) {
-  constexpr std::array kNames = {"sigma", "alpha", "slip_force"};
-  const std::array values = {truth.tangential_stiffness, truth.shape_exponent, truth.slip_force};
-  std::array<double, kNames.size()> errors{};
+  using Value = std::pair<const char*, double>;
+  const std::array truth = {Value{"sigma", law.tangential_stiffness},
+                            Value{"alpha", law.shape_exponent},
+                            Value{"slip_force", law.slip_force}};
+  std::array<double, truth.size()> errors{};
   bool is_undetermined = false;
-  for (std::size_t k = 0; k < values.size() && !fit.parameters.empty(); ++k) {
-    const ParameterEstimate& estimate = *fit.Find(kNames[k]);
-    errors[k] = estimate.name == "alpha" ? std::abs(estimate.value - values[k])
-                                         : std::abs(estimate.value / values[k] - 1);
+  for (std::size_t k = 0; k < truth.size() && !fit.parameters.empty(); ++k) {
+    const auto& [name, value] = truth[k];
+    const ParameterEstimate& estimate = *fit.Find(name);
+    errors[k] = estimate.name == "alpha" ? std::abs(estimate.value - value)
+                                         : std::abs(estimate.value / value - 1);
     row.errors[k] = std::max(row.errors[k], errors[k]);
     is_undetermined |= !estimate.is_known();
     if (!estimate.is_known()) continue;
     ++row.intervals;
-    const bool covers = estimate.lower95.value_or(values[k]) <= values[k] &&
-                        values[k] <= estimate.upper95.value_or(values[k]);
+    const bool covers =
+        estimate.lower95.value_or(value) <= value && value <= estimate.upper95.value_or(value);
     row.covering += covers ? 1 : 0;
   }
   const bool has_noise = row.noise > 0;
-  const double standardized =
-      has_noise && fit.converged ? StandardizedDistance(record, truth, fit) : 0.0;
+  // Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
+  // unlike an error over a standard error it also holds where the likelihood is not a parabola.
+  double standardized = 0.0;
+  if (has_noise && fit.converged) {
+    const FitOptions options{.initial_state = fit.initial_state,
+                             .fixed = {truth.begin(), truth.end()}};
+    const double ratio = Fit({&record, 1}, options, Depth::kEstimate).rms / fit.rms;
+    standardized = std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.degrees_of_freedom);
+  }
   ++row.cases;
   row.undetermined += is_undetermined ? 1 : 0;
   row.worst_standardized = std::max(row.worst_standardized, standardized);

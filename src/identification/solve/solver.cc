@@ -83,9 +83,7 @@ class TinySearch {
         options_(options),
         count_(std::ssize(residual.searched())),
         lower_(count_),
-        upper_(count_),
-        floor_(static_cast<double>(residual.problem().data->counted) * kRoundingRms *
-               kRoundingRms) {
+        upper_(count_) {
     for (Eigen::Index j = 0; j < count_; ++j) {
       lower_[j] = residual.Searched(j).lower;
       upper_[j] = residual.Searched(j).upper;
@@ -114,12 +112,8 @@ class TinySearch {
  private:
   struct Function {
     using Scalar = double;
-    enum {  // Names that TinySolver asks for.
-      // NOLINTNEXTLINE(readability-identifier-naming)
-      NUM_RESIDUALS = Eigen::Dynamic,
-      // NOLINTNEXTLINE(readability-identifier-naming)
-      NUM_PARAMETERS = Eigen::Dynamic
-    };
+    // NOLINTNEXTLINE(readability-identifier-naming): what TinySolver asks for
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
     [[nodiscard]] int NumParameters() const { return static_cast<int>(search->count_); }
     [[nodiscard]] int NumResiduals() const { return static_cast<int>(search->count_) + 1; }
@@ -151,14 +145,12 @@ class TinySearch {
   double Try(const Eigen::VectorXd& x);
   void Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
               Eigen::Map<Eigen::MatrixXd> columns);
-  void CountAccepted();
 
   ProjectedResidual& residual_;
   const SolverOptions& options_;
   Eigen::Index count_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
-  double floor_;  // of the cost: below it residuals are rounding errors
   Tiny tiny_;
   Point at_;                       // the accepted one
   Point trial_;                    // the last evaluated one
@@ -166,18 +158,8 @@ class TinySearch {
   bool is_last_ = false;           // is the next accepted step the last one?
   bool is_slow_ = false;
   int accepted_ = 0;          // points
-  double cost_before_ = 0.0;  // kSlowSteps accepted steps ago
+  double cost_before_ = 0.0;  // at the last one at which the progress was looked at
 };
-
-void TinySearch::CountAccepted() {
-  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
-  constexpr int kSlowSteps = 20;          // ... in as many steps
-  const int steps = accepted_++;
-  if (steps % kSlowSteps != 0) return;
-  const auto samples = static_cast<double>(residual_.problem().data->counted);
-  is_slow_ = steps > 0 && samples * (cost_before_ - at_.cost) < kSmallestGain * cost_before_;
-  cost_before_ = at_.cost;
-}
 
 /// @returns the root of the cost, or of one by which a trial is refused
 double TinySearch::Try(const Eigen::VectorXd& x) {
@@ -210,10 +192,18 @@ void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> ro
   compressed_ =
       Compress(residual_.normal(), residual_.gradient(), at_.cost,
                below > 0 || (below == 0 && slope > 0) || above > 0 || (above == 0 && slope < 0));
-  CountAccepted();
+  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
+  constexpr int kSlowSteps = 20;          // ... in as many steps
+  const auto samples = static_cast<double>(residual_.problem().data->counted);
+  if (accepted_++ % kSlowSteps == 0) {
+    const double gain = samples * (cost_before_ - at_.cost);
+    is_slow_ = accepted_ > 1 && gain < kSmallestGain * cost_before_;
+    cost_before_ = at_.cost;
+  }
   const double left = compressed_.Explained();
   if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
-  is_last_ = left <= kLastStep * at_.cost && at_.cost > floor_;
+  const double rounding = samples * kRoundingRms * kRoundingRms;
+  is_last_ = left <= kLastStep * at_.cost && at_.cost > rounding;
   rows = compressed_.residual;
   columns = compressed_.jacobian;
 }
@@ -352,16 +342,15 @@ Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
 }
 
 Solution Solver::Solve(std::span<const double> start, const SolverOptions& options) {
-  Solution solution;
   Eigen::VectorXd u = residual_.SearchedOf(start);
-  if (u.size() == 0) {
-    solution.sum_of_squares = residual_.Evaluate(u);
-    solution.converged = true;
-    solution.report.solver = "none";
-    solution.report.termination = "CONVERGENCE";
-    solution.report.message = "Every parameter that is not linear is fixed.";
-  } else {
+  Solution solution;
+  if (u.size() > 0) {
     solution = SearchFrom(u, options);
+  } else {
+    solution = {.sum_of_squares = residual_.Evaluate(u),
+                .converged = true,
+                .report = {.termination = "CONVERGENCE",
+                           .message = "Every parameter that is not linear is fixed."}};
   }
   solution.theta = residual_.Theta();
   solution.report.final_cost = solution.sum_of_squares / 2;
