@@ -164,10 +164,6 @@ Response::Response(const Problem& problem)
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.initial_state, histories_[r]);
   }
-  slip_varies_ =
-      std::ranges::any_of(std::array{TermId::kSlipSlope, TermId::kSlipCurvature, TermId::kSlipSpeed,
-                                     TermId::kSlipTrend, TermId::kDragFraction},
-                          [this](TermId id) { return Has(id); });
 }
 
 const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
@@ -240,20 +236,18 @@ void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion&
                                  std::span<double> t, const ResponseColumns& columns) {
   constexpr std::array kOfPath = {TermId::kSigma, TermId::kAlpha, TermId::kDisplacementOffset,
                                   TermId::kRigStiffness, TermId::kAsymmetry};
-  const std::size_t size = t.size();
-  std::vector<double> storage((1 + kOfPath.size()) * size);
-  const std::span<double> forces = std::span(storage).first(size);
+  Eigen::MatrixXd storage = Eigen::MatrixXd::Zero(std::ssize(t), 1 + std::ssize(kOfPath));
+  const std::span<double> forces = SpanOf(storage.col(0));
   ResponseColumns of_side;
   std::ranges::fill(t, 0.0);  // while the gap is crossed
-  for (std::size_t k = 0; k < kOfPath.size(); ++k) {
-    std::ranges::fill(columns[kOfPath[k]], 0.0);
-    if (columns[kOfPath[k]].empty()) continue;
-    of_side[kOfPath[k]] = std::span(storage).subspan((1 + k) * size, size);
+  for (Eigen::Index k = 1; const TermId id : kOfPath) {
+    std::ranges::fill(columns[id], 0.0);
+    if (!columns[id].empty()) of_side[id] = SpanOf(storage.col(k++));
   }
   for (const double sign : {-1.0, 1.0}) {
     const auto& [displacement, path] = motion.paths[sign > 0 ? 0 : 1];
     response_.Evaluate(*problem_.model, law, path, displacement, forces, GradientOf(of_side));
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = 0; i < t.size(); ++i) {
       if (!(sign * forces[i] >= 0)) continue;
       t[i] = forces[i];
       for (const TermId id : kOfPath) {
@@ -274,7 +268,7 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
     if (!IsMasing(problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
       ReadForceOfJoint(record, theta[kAsymmetry], values, parts);
     }
-    if (slip_varies_) ScaleBySlipForce(record, theta, values, parts);
+    ScaleBySlipForce(record, theta, values, parts);
     if (record.load == 1) continue;
     ArrayOf(values) *= record.load;
     for (const std::span<double> column : parts) ArrayOf(column) *= record.load;
@@ -283,6 +277,9 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
 
 void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,
                                 std::span<double> response, const ResponseColumns& columns) const {
+  constexpr std::array kTerms = {TermId::kSlipSlope, TermId::kSlipCurvature, TermId::kSlipSpeed,
+                                 TermId::kSlipTrend, TermId::kDragFraction};
+  if (std::ranges::none_of(kTerms, [this](TermId id) { return Has(id); })) return;
   const auto value = [&](TermId id) { return theta[RowOf(id)]; };
   const ConstArray position = ArrayOf(record.displacement);
   // ln(v/v₀), far below zero and finite where nothing moves, and (v/v₀)^m − 1

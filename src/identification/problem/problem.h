@@ -87,7 +87,8 @@ class Response {
                     const ResponseColumns& columns);
   void EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,
                          std::span<double> t, const ResponseColumns& columns);
-  /// Multiplies t and its derivatives by the slip force at each sample, and adds the drag.
+  /// Multiplies t and its derivatives by the slip force at each sample, where it varies, and adds
+  /// the drag.
   void ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,
                         std::span<double> response, const ResponseColumns& columns) const;
   [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
@@ -101,14 +102,12 @@ class Response {
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   models::NormalizedLoadedResponse loaded_response_;
-  bool slip_varies_ = false;  // over positions, speeds or time
 };
 
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
 Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta);
 
 /// Adds a multiple of the column of a linear parameter, of every sample; no weight.
-/// @param theta       of all parameters: a column may depend on some (Term::shapes)
 /// @param derivative  adds the column's derivative by the parameter that shapes it instead
 void AddColumn(const Problem& problem, std::size_t parameter, std::span<const double> theta,
                double factor, Eigen::Ref<Eigen::VectorXd> to, bool derivative = false);

@@ -40,9 +40,7 @@ void ProjectedResidual::FactoriseColumns() {
   measured_ = problem_.data->All(&ScaledRecord::response);
   AddLinearTerms(problem_, theta_, -1.0, measured_);
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, std::ssize(eliminated_));
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    AddColumn(problem_, eliminated_[static_cast<std::size_t>(k)], theta_, 1.0, columns.col(k));
-  }
+  AddDerivativesOfColumns(problem_, eliminated_, theta_, columns);
   measured_.array() *= weight_.array();
   columns.array().colwise() *= weight_.array();
   // A column whose part orthogonal to the others is below this fraction of it depends on them.
