@@ -68,8 +68,7 @@ Record MindlinRecord(const Case& drawn) {
   return record;
 }
 
-/// Compares a fit with the truth and adds it to its row.
-/// @returns what misses the tolerance; empty where nothing does
+/// Adds a fit to its row, and returns what misses the tolerance; empty where nothing does.
 std::string Add(const Record& record, const models::BranchLaw& law, const FitResult& fit,
                 ValidationRow& row) {
   using Value = std::pair<const char*, double>;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
@@ -15,8 +14,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// The displacements of five samples about a turn, the outermost one in the middle, and their
-/// times.
+/// Displacements and times of five samples about a turn, the outermost one in the middle.
 struct FiveSamples {
   std::span<const double, 5> x;
   std::span<const double, 5> t;
@@ -27,8 +25,7 @@ struct FiveSamples {
   }
 };
 
-/// Returns where the lines of both strokes meet; nothing where the velocity changes elsewhere than
-/// at the turn.
+/// Returns where the lines of both strokes meet; nothing where the velocity also changes elsewhere.
 /// @param before  the last sample before the turn, 1 or 2
 std::optional<double> SharpTurn(const FiveSamples& about, std::size_t before) {
   constexpr double kStraight = 0.1;  // change of the velocity beside the turn, over that at it
@@ -74,10 +71,9 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
   return p[0];
 }
 
-/// Returns where a motion is between two samples between which it does not turn: on their chord, or
-/// if it turns between samples on the cubic through four. A second difference counts up to twice
-/// the other one, so that the motion runs straight beside a corner, and in the first and the last
-/// step.
+/// Returns where a motion is between two samples without a turn between them: on their chord, or if
+/// it turns between samples on the cubic through four. A second difference counts up to twice the
+/// other one, so that the motion runs straight beside a corner, and in the first and the last step.
 /// @param next  the later of the two samples
 double PositionBetween(const ScaledRecord& motion, std::size_t next, double time) {
   const std::vector<double>& x = motion.displacement;
@@ -118,9 +114,8 @@ TurnInTime TimeOfTurn(const ScaledRecord& motion, std::size_t next, double displ
   return {t[next - 1] + share * step, is_sharp ? 1.0 : 2.0};
 }
 
-/// Moves a contact whose force is read late. It turns where the record does, whatever the lag;
-/// beyond both ends of the record it rests. Where the record turns at its samples it runs straight
-/// between them.
+/// Moves a contact whose force is read late. It turns where the record does, whatever the lag, and
+/// rests beyond its ends; where the record turns at its samples it runs straight between them.
 std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const models::Turn> turns,
                                    double lag, std::vector<double>& late) {
   const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;

@@ -141,8 +141,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   return parameter;
 }
 
-/// Refuses a term without the one or the time that it needs, and a second one that moves the
-/// contact.
+/// Refuses a term without the one or the time that it needs, and a second that moves the contact.
 void RequireTerms(const ScaledRecords& data, const Parameters& parameters) {
   const bool is_timed = std::ranges::none_of(
       data.records, [](const ScaledRecord& record) { return record.velocity.empty(); });
@@ -185,8 +184,7 @@ void KeepBelowOne(Parameter& shape) {
                "load=LO:HI");
 }
 
-/// Bounds Tc, and begins with it, where the force is imposed: below the largest force of a steady
-/// loop it has no loop.
+/// Bounds Tc, and begins with it: below the largest imposed force a steady contact has no loop.
 void KeepAboveLoops(const ScaledRecords& data, Parameter& slip_force) {
   constexpr double kShortOfSlip = 1e-9;
   if (slip_force.fixed) return;

@@ -43,8 +43,7 @@ struct Parameter {
   bool confounded = false;          // held at 0, as an offset that is fitted says the same
   bool assumed = false;  // held, not where the file has its zero, but where the record begins
 
-  /// θ of a prior, and the root weight of θ's difference from it as one more residual; 0 without
-  /// a prior.
+  /// θ of a prior, and the root weight of θ's difference from it, one more residual; 0: no prior.
   double prior_theta = 0.0;
   double prior_root_weight = 0.0;
 
@@ -69,8 +68,7 @@ enum class BoundSide { kInside, kLower, kUpper };
 /// 1000. A parameter that is held lies inside.
 BoundSide SideOf(const Parameter& parameter, double theta);
 
-/// True if a parameter that lies at this side stopped at a bound of the program's own: neither the
-/// user's, nor α = 0, which the theory has.
+/// True if the bound of this side is the program's own: neither the user's, nor the theory's.
 bool IsSearchLimit(const Parameter& parameter, BoundSide side);
 
 /// Returns the position of a term of the contact that is not a covariate's, the same in every fit.
@@ -112,8 +110,7 @@ class Parameters {
   [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const {
     return PositionOf(OriginId(excitation_), record);
   }
-  /// Returns the place of the contact's term, or of a record's; size() of a covariate's where there
-  /// is none.
+  /// Returns the place of the contact's term, or of a record's; size() without any covariate.
   [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record = 0) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
   /// Returns the place of the term that moves the contact away from the displacement at the time of

@@ -52,8 +52,7 @@ void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<do
   }
 }
 
-/// Returns the column of a linear parameter in a record, or its derivative by the parameter that
-/// shapes it (Term::shapes).
+/// Returns the column of a linear parameter in a record, or its derivative (Term::shapes).
 Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const ScaledRecord& record,
                         std::span<const double> theta, bool derivative) {
   const Parameter& of = problem.parameters[parameter];

@@ -16,8 +16,7 @@
 
 namespace mindahl::identification {
 
-/// Holds what is to be solved: records, a model, their initial state and the parameters. Nothing of
-/// it changes during the solution.
+/// Holds what is to be solved, which does not change meanwhile.
 struct Problem {
   Problem(const ScaledRecords& records, const FitOptions& options, models::InitialState initial)
       : data(&records),

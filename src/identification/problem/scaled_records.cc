@@ -49,8 +49,7 @@ void RequireScale(std::string_view quantity, double half_range) {
   ThrowInvalid(quantity, half_range, "must lie between 1e-100 and 1e100: choose other units");
 }
 
-/// Central differences by time, one-sided at the ends and where time stands still.
-/// @param unit  of time [s], the same for all records
+/// Central differences by time in a unit [s], one-sided at the ends and where time stands still.
 std::vector<double> DerivativeOf(const std::vector<double>& values, const ScaledRecord& record,
                                  double unit) {
   const double units = record.units.half_duration / unit;
@@ -97,8 +96,7 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
   return sum > 0 ? sum / path : 1.0;
 }
 
-/// Takes the loads within a record from their column.
-/// @returns their mean over the samples that count [N]
+/// Takes the loads within a record, and returns their mean over the samples that count [N].
 double TakeVaryingLoad(const loop::PreparedRecord& record, const FitOptions& options,
                        ScaledRecord& target) {
   std::vector<double> counted;

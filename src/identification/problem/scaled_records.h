@@ -161,8 +161,7 @@ ScaledRecords Thinned(const ScaledRecords& data);
 /// Returns the correlation of two columns of one size; 0 where one is constant.
 double ColumnCorrelation(std::span<const double> one, std::span<const double> other);
 
-/// True if two columns are one channel, read twice or in other units: linear in each other but for
-/// a tenth of their deviation.
+/// True if two columns are one channel: linear in each other but for a tenth of their deviation.
 bool AreOneChannel(std::span<const double> one, std::span<const double> other);
 
 }  // namespace mindahl::identification

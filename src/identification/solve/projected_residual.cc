@@ -1,7 +1,6 @@
 #include "identification/solve/projected_residual.h"
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

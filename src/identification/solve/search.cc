@@ -245,8 +245,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
                                  .parameter_tolerance = 1e-6,
                                  .max_iterations = 30,
                                  .is_rough = true};
-  // With α held at 0 the likelihood has a kink wherever a sample begins to slip, and minima next to
-  // each other.
+  // With α held at 0 the cost has a kink, and many a minimum, wherever a sample begins to slip.
   const Parameter& shape = parameters[kShape];
   const bool has_kinks = shape.fixed && shape.theta == 0;
   // The thinned records have the history of the whole, but too few samples for many parameters, or

@@ -20,9 +20,6 @@ namespace {
 /// A full step is the last one if it can lower the cost by at most this fraction.
 constexpr double kLastStep = 1e-8;
 
-/// A residual that refuses a trial: ½ of its square is beyond any cost that is finite, and finite.
-constexpr double kRefused = 1e150;
-
 /// n residuals of P coordinates as P + 1 with the same sum of squares, the same JᵀJ and the same
 /// Jᵀr: what a least-squares solver learns of them, at a cost that does not grow with n. The first
 /// P rows are what the Jacobian's columns explain of the residual, the last is what they do not.
@@ -37,10 +34,8 @@ struct CompressedResidual {
 };
 
 /// JᵀJ of unit columns = PᵀLDLᵀP; the rows are √D·Lᵀ·P, and those of the residual √D⁻¹·L⁻¹·P·Jᵀr.
-/// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
-/// @param gradient  Jᵀr
-/// @param cost      rᵀr
-/// @param frozen    true of a coordinate whose column counts as 0
+/// @param normal  JᵀJ, from which a rank below P shows as rows of zeros; then Jᵀr and rᵀr
+/// @param frozen  true of a coordinate whose column counts as 0
 CompressedResidual Compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient,
                             double cost, const Eigen::ArrayX<bool>& frozen) {
   // Pivots of unit columns below it are rounding: the direction has no effect.
@@ -68,14 +63,13 @@ CompressedResidual Compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd
 }
 
 /// ceres::TinySolver with what the searches of one start share.
-///
 /// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
 /// stops by the absolute change of the cost. Its cost functor therefore
 /// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
 /// - refuses a trial that is too far for its linearisation;
 /// - linearises a trial at once, as an accepted one is linearised next;
-/// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
-///   the function tolerance.
+/// - ends the search by a zero gradient where no step lowers the cost beyond the function
+/// tolerance.
 class TinySearch {
  public:
   TinySearch(ProjectedResidual& residual, const SolverOptions& options)
@@ -91,7 +85,24 @@ class TinySearch {
   }
 
   /// Searches from u, which it moves.
-  void Run(Eigen::VectorXd& u);
+  void Run(Eigen::VectorXd& u) {
+    constexpr double kLargestRadius = 1e3;
+    // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
+    tiny_.options.gradient_tolerance = std::numeric_limits<double>::min();
+    tiny_.options.cost_threshold = 0.0;
+    tiny_.options.parameter_tolerance = options_.parameter_tolerance;
+    tiny_.options.max_num_iterations = options_.max_iterations;
+    tiny_.options.initial_trust_region_radius = kLargestRadius;
+    is_last_ = is_slow_ = false;
+    accepted_ = 0;
+    Eigen::VectorXd point = u;
+    trial_ = Within(point);
+    trial_.cost = residual_.Linearise(trial_.u);
+    tiny_.Solve(Function{this}, &point);
+    // A step that ends the search is not accepted by a call.
+    if (at_.u != Within(point).u) at_ = trial_;
+    u = at_.u;
+  }
 
   // Results of the last run.
   [[nodiscard]] double cost() const { return at_.cost; }
@@ -142,9 +153,53 @@ class TinySearch {
   [[nodiscard]] Point Within(const Eigen::VectorXd& x) const {
     return {.u = x.cwiseMax(lower_).cwiseMin(upper_)};
   }
-  double Try(const Eigen::VectorXd& x);
+  /// @returns the root of the cost, or of one by which a trial is refused
+  double Try(const Eigen::VectorXd& x) {
+    constexpr double kRefused = 1e150;  // ½ of its square is finite, and beyond any finite cost
+    // A longer step leads out of what the linearisation of the accepted point says.
+    constexpr double kLongest = 1.5;
+    constexpr double kOfBounds = 0.25;  // of their distance
+    const Eigen::VectorXd longest = (kOfBounds * (upper_ - lower_)).cwiseMin(kLongest);
+    const Eigen::VectorXd step = Within(x).u - at_.u;
+    if (!x.allFinite() || (step.cwiseAbs().array() > longest.array()).any()) return kRefused;
+    trial_ = Within(x);
+    trial_.cost = is_last_ ? residual_.Evaluate(trial_.u) : residual_.Linearise(trial_.u);
+    // A last step that does not lower the cost could have gained next to nothing: it is refused by
+    // less than the function tolerance, which ends the search.
+    if (is_last_ && !(trial_.cost < at_.cost)) {
+      return std::sqrt(at_.cost * (1 + options_.function_tolerance / 2));
+    }
+    return std::isfinite(trial_.cost) ? std::sqrt(trial_.cost) : kRefused;
+  }
+
   void Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
-              Eigen::Map<Eigen::MatrixXd> columns);
+              Eigen::Map<Eigen::MatrixXd> columns) {
+    at_ = trial_;
+    columns.setZero();
+    rows[count_] = std::sqrt(at_.cost);
+    tiny_.options.function_tolerance = options_.function_tolerance * at_.cost;
+    if (is_last_) return;  // a zero gradient ends the search
+    const Eigen::ArrayXd below = (lower_ - x).array();
+    const Eigen::ArrayXd above = (x - upper_).array();
+    const auto slope = residual_.gradient().array();
+    compressed_ =
+        Compress(residual_.normal(), residual_.gradient(), at_.cost,
+                 below > 0 || (below == 0 && slope > 0) || above > 0 || (above == 0 && slope < 0));
+    constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
+    constexpr int kSlowSteps = 20;          // ... in as many steps
+    const auto samples = static_cast<double>(residual_.problem().data->counted);
+    if (accepted_++ % kSlowSteps == 0) {
+      const double gain = samples * (cost_before_ - at_.cost);
+      is_slow_ = accepted_ > 1 && gain < kSmallestGain * cost_before_;
+      cost_before_ = at_.cost;
+    }
+    const double left = compressed_.Explained();
+    if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
+    const double rounding = samples * kRoundingRms * kRoundingRms;
+    is_last_ = left <= kLastStep * at_.cost && at_.cost > rounding;
+    rows = compressed_.residual;
+    columns = compressed_.jacobian;
+  }
 
   ProjectedResidual& residual_;
   const SolverOptions& options_;
@@ -161,85 +216,12 @@ class TinySearch {
   double cost_before_ = 0.0;  // at the last one at which the progress was looked at
 };
 
-/// @returns the root of the cost, or of one by which a trial is refused
-double TinySearch::Try(const Eigen::VectorXd& x) {
-  // A longer step leads out of what the linearisation of the accepted point says.
-  constexpr double kLongest = 1.5;
-  constexpr double kOfBounds = 0.25;  // of their distance
-  const Eigen::VectorXd longest = (kOfBounds * (upper_ - lower_)).cwiseMin(kLongest);
-  const Eigen::VectorXd step = Within(x).u - at_.u;
-  if (!x.allFinite() || (step.cwiseAbs().array() > longest.array()).any()) return kRefused;
-  trial_ = Within(x);
-  trial_.cost = is_last_ ? residual_.Evaluate(trial_.u) : residual_.Linearise(trial_.u);
-  // A last step that does not lower the cost could have gained next to nothing: it is refused by
-  // less than the function tolerance, which ends the search.
-  if (is_last_ && !(trial_.cost < at_.cost)) {
-    return std::sqrt(at_.cost * (1 + options_.function_tolerance / 2));
-  }
-  return std::isfinite(trial_.cost) ? std::sqrt(trial_.cost) : kRefused;
-}
-
-void TinySearch::Accept(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> rows,
-                        Eigen::Map<Eigen::MatrixXd> columns) {
-  at_ = trial_;
-  columns.setZero();
-  rows[count_] = std::sqrt(at_.cost);
-  tiny_.options.function_tolerance = options_.function_tolerance * at_.cost;
-  if (is_last_) return;  // a zero gradient ends the search
-  const Eigen::ArrayXd below = (lower_ - x).array();
-  const Eigen::ArrayXd above = (x - upper_).array();
-  const auto slope = residual_.gradient().array();
-  compressed_ =
-      Compress(residual_.normal(), residual_.gradient(), at_.cost,
-               below > 0 || (below == 0 && slope > 0) || above > 0 || (above == 0 && slope < 0));
-  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
-  constexpr int kSlowSteps = 20;          // ... in as many steps
-  const auto samples = static_cast<double>(residual_.problem().data->counted);
-  if (accepted_++ % kSlowSteps == 0) {
-    const double gain = samples * (cost_before_ - at_.cost);
-    is_slow_ = accepted_ > 1 && gain < kSmallestGain * cost_before_;
-    cost_before_ = at_.cost;
-  }
-  const double left = compressed_.Explained();
-  if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
-  const double rounding = samples * kRoundingRms * kRoundingRms;
-  is_last_ = left <= kLastStep * at_.cost && at_.cost > rounding;
-  rows = compressed_.residual;
-  columns = compressed_.jacobian;
-}
-
-void TinySearch::Run(Eigen::VectorXd& u) {
-  constexpr double kLargestRadius = 1e3;
-  // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
-  tiny_.options.gradient_tolerance = std::numeric_limits<double>::min();
-  tiny_.options.cost_threshold = 0.0;
-  tiny_.options.parameter_tolerance = options_.parameter_tolerance;
-  tiny_.options.max_num_iterations = options_.max_iterations;
-  tiny_.options.initial_trust_region_radius = kLargestRadius;
-  is_last_ = is_slow_ = false;
-  accepted_ = 0;
-  Eigen::VectorXd point = u;
-  trial_ = Within(point);
-  trial_.cost = residual_.Linearise(trial_.u);
-  tiny_.Solve(Function{this}, &point);
-  // A step that ends the search is not accepted by a call.
-  if (at_.u != Within(point).u) at_ = trial_;
-  u = at_.u;
-}
-
 }  // namespace
 
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
-  switch (loss) {
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(1.345);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(2.385);
-    case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(4.685);
-    case Loss::kNone:
-      break;
-  }
+  if (loss == Loss::kHuber) return std::make_unique<ceres::HuberLoss>(1.345);
+  if (loss == Loss::kCauchy) return std::make_unique<ceres::CauchyLoss>(2.385);
+  if (loss == Loss::kTukey) return std::make_unique<ceres::TukeyLoss>(4.685);
   return nullptr;
 }
 
@@ -282,8 +264,7 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   solution.report.iterations += static_cast<int>(summary.iterations.size());
 }
 
-/// Moves u to the minimum.
-/// @returns the solution but for θ
+/// Moves u to the minimum, and returns the solution but for θ.
 Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
   Solution solution;
   SolverReport& report = solution.report;

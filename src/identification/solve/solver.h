@@ -45,7 +45,6 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 /// - ceres::TinySolver where the solution lies inside the bounds;
 /// - ceres::Solve with the bounds, from there on, where a coordinate ends at one, and wherever
 ///   TinySolver does not converge. The lower of the two costs is kept.
-///
 /// Searches of one solver share the basis of the eliminated columns and the buffers.
 class Solver {
  public:

@@ -13,8 +13,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// Puts the loss of a residual in its place.
-/// @returns the derivative by the residual
+/// Puts the loss of a residual in its place, and returns the derivative by the residual.
 double ApplyLoss(const ceres::LossFunction& loss, double& residual) {
   std::array<double, 3> rho{};  // and its derivatives by the square
   loss.Evaluate(residual * residual, rho.data());
