@@ -68,9 +68,8 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
   const Problem problem(data, options, models::InitialState::kSteady);
-  Solution solution;
   const std::vector<double> theta = problem.parameters.Theta();
-  solution.theta = theta;
+  Solution solution{.theta = theta};
   Noise noise;
   FitWithWeights(problem, data, options, loop::DrawReadings(prepared).get(), solution, noise);
   solution.theta = theta;

@@ -68,9 +68,7 @@ bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   // A fit that is given a start looks for others on all samples, where it does.
-  std::optional<ScaledRecords> thinned;
-  if (options.start.empty()) thinned = Thinned(attempt.data);
-  const ScaledRecords& thin = thinned ? *thinned : attempt.data;
+  const ScaledRecords thin = options.start.empty() ? Thinned(attempt.data) : attempt.data;
   const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, thin, options);
     Descend(candidate, options);
@@ -86,9 +84,7 @@ SolvedFit FitBestState(const Attempt& attempt) {
     return {.best = std::move(candidates.front())};
   }
   std::vector<double> costs;  // at the best starts
-  for (Candidate& candidate : candidates) {
-    costs.push_back(FindStartsOf(candidate, thin, options));
-  }
+  for (Candidate& candidate : candidates) costs.push_back(FindStartsOf(candidate, thin, options));
   Candidate& virgin = candidates.front();
   Candidate& steady = candidates.back();
   // A start from the options has no cost.

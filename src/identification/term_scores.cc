@@ -57,9 +57,7 @@ TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> insi
   score.rms = problem.data->force * std::sqrt(with / samples);
   score.gain = 1 - std::sqrt(with / without);
   const double ratio = evidence.LikelihoodRatio(without, with);
-  if (ratio > 0) {
-    score.p_value = PValueOfChiSquared(ratio, static_cast<double>(axes.values.size()));
-  }
+  if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, static_cast<double>(axes.values.size()));
   return score;
 }
 

@@ -10,9 +10,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Least square of the norm of an axis that is independent of the others.
-constexpr double kLeastOfAxis = 1e-6;
-
 /// Scales columns to unit norm; those of zeros, and what overflows, become zero.
 Eigen::VectorXd Normalize(Eigen::MatrixXd& columns) {
   Eigen::VectorXd norms = columns.colwise().norm();
@@ -83,7 +80,9 @@ GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& at) const {
   GramAxes axes;
   const Eigen::MatrixXd free = free_(at, at);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free);
-  const Eigen::Index count = (pairs.eigenvalues().array() > kLeastOfAxis).count();  // the last ones
+  constexpr double kLeast =
+      1e-6;  // square of the norm of an axis that is independent of the others
+  const Eigen::Index count = (pairs.eigenvalues().array() > kLeast).count();  // the last ones
   axes.values = pairs.eigenvalues().tail(count).array();
   axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);
   axes.vectors(at, Eigen::all) = pairs.eigenvectors().rightCols(count);

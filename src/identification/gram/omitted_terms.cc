@@ -59,20 +59,6 @@ RandomTerms EstimateTerms(const GramAxes& axes, const NoiseLevel& noise) {
           .gains = ratio / spread(ratio)};
 }
 
-/// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
-void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
-              const Evidence& evidence, double limit, OmittedTerm& fit) {
-  const auto columns = static_cast<double>(axes.values.size());
-  const double f = (axes.coefficients.square() / axes.noise).mean() / noise.variance;
-  fit.p_value = f > 0 ? PValueOfF(f, columns, noise.degrees) : 1.0;
-  if (!(fit.p_value < limit)) return;
-  const GramStep step = gram.StepBy(axes, axes.values.inverse());
-  const double explained = axes.coefficients.square().sum();
-  fit.explains = std::clamp(explained / gram.sum_of_squares(), 0.0, 1.0);
-  fit.step = step.law;
-  fit.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
-}
-
 }  // namespace
 
 AdequacyTest TestAdequacy(const Estimates& fitted) {
@@ -132,8 +118,16 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
   double least = 1.0;
   for (OmittedTerm& term : departures.terms) {
     const GramAxes of_term = gram.AxesOf(term.places);
-    if (of_term.values.size() == 0) continue;
-    TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
+    const auto columns = static_cast<double>(of_term.values.size());
+    if (columns == 0) continue;
+    const Eigen::ArrayXd squares = of_term.coefficients.square();
+    const double f = (squares / of_term.noise).mean() / level.variance;
+    term.p_value = f > 0 ? PValueOfF(f, columns, level.degrees) : 1.0;
+    if (term.p_value < thresholds.rare_chance) {
+      term.explains = std::clamp(squares.sum() / gram.sum_of_squares(), 0.0, 1.0);
+      term.step = gram.StepBy(of_term, of_term.values.inverse()).law;
+      term.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - term.explains);
+    }
     // Under autocorrelated noise the F test of a single term is too liberal.
     if (process.coefficients.empty()) {
       least = std::min(least, term.p_value);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
@@ -92,14 +93,11 @@ double PositionBetween(const ScaledRecord& motion, std::size_t next, double time
   return straight + (time - t[next - 1]) * (time - t[next]) * half_curvature;
 }
 
-/// Holds when a motion turns between two samples, and as which power of time it comes and goes.
-struct TurnInTime {
-  double time;
-  double power;  // 2, or 1 where it turns sharply
-};
-
+/// Returns when a motion turns between two samples, and as which power of time it comes and goes:
+/// the second, or the first where it turns sharply.
 /// @param next  the sample after the turn
-TurnInTime TimeOfTurn(const ScaledRecord& motion, std::size_t next, double displacement) {
+std::pair<double, double> TimeOfTurn(const ScaledRecord& motion, std::size_t next,
+                                     double displacement) {
   constexpr double kSharp = 2.0 / 3;  // of the step; smooth motions take a third of it
   const std::vector<double>& x = motion.displacement;
   const std::vector<double>& t = motion.time;

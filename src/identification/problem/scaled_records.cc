@@ -205,6 +205,26 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
   }
 }
 
+/// Returns the record with these of its samples, in all of its columns; `reversals` as they were.
+ScaledRecord SomeOf(const ScaledRecord& record, std::span<const std::size_t> samples) {
+  ScaledRecord some = record;
+  const auto take = [&](auto& column, const auto& all) {
+    if (all.empty()) return;
+    column.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) column[i] = all[samples[i]];
+  };
+  for (const auto column :
+       {&ScaledRecord::displacement, &ScaledRecord::force, &ScaledRecord::time,
+        &ScaledRecord::velocity, &ScaledRecord::acceleration, &ScaledRecord::log_speed,
+        &ScaledRecord::load_ratio, &ScaledRecord::load_change, &ScaledRecord::root_weight}) {
+    take(some.*column, record.*column);
+  }
+  take(some.counts, record.counts);
+  for (std::size_t c = 0; c < record.covariates.size(); ++c)
+    take(some.covariates[c], record.covariates[c]);
+  return some;
+}
+
 }  // namespace
 
 std::size_t ScaledRecord::CountTurns() const {
@@ -228,24 +248,6 @@ bool ScaledRecord::BeginsOnLoop() const {
     }
   }
   return false;
-}
-
-ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
-  ScaledRecord some = *this;
-  const auto take = [&](auto& column, const auto& all) {
-    if (all.empty()) return;
-    column.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) column[i] = all[samples[i]];
-  };
-  for (const auto column :
-       {&ScaledRecord::displacement, &ScaledRecord::force, &ScaledRecord::time,
-        &ScaledRecord::velocity, &ScaledRecord::acceleration, &ScaledRecord::log_speed,
-        &ScaledRecord::load_ratio, &ScaledRecord::load_change, &ScaledRecord::root_weight}) {
-    take(some.*column, this->*column);
-  }
-  take(some.counts, counts);
-  for (std::size_t c = 0; c < covariates.size(); ++c) take(some.covariates[c], covariates[c]);
-  return some;
 }
 
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
@@ -372,7 +374,7 @@ ScaledRecords Thinned(const ScaledRecords& data) {
       if (end > begin) samples.push_back(end);
       if (turns.size() < record.reversals.size()) turns.push_back(samples.size() - 1);
     }
-    ScaledRecord& thin = thinned.records[r] = record.At(samples);
+    ScaledRecord& thin = thinned.records[r] = SomeOf(record, samples);
     thin.reversals = std::move(turns);
     thin.whole = &record;
     thin.first = std::exchange(first, first + thin.size());

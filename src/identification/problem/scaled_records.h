@@ -50,9 +50,6 @@ struct ScaledRecord {
   /// also one from where its force is zero: the next stroke runs through the opposite place.
   [[nodiscard]] bool BeginsOnLoop() const;
 
-  /// Returns the record with these of its samples, in all of its columns; `reversals` as they were.
-  [[nodiscard]] ScaledRecord At(std::span<const std::size_t> samples) const;
-
   [[nodiscard]] std::span<const double> excitation() const {
     return imposed == loop::Channel::kForce ? force : displacement;
   }
