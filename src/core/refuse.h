@@ -13,10 +13,10 @@
 
 namespace mindahl {
 
-/// @throws InputError of a text always
-template <typename... Parts>
+/// @throws InputError of a text always, or what is named
+template <typename Error = InputError, typename... Parts>
 [[noreturn]] void Refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
-  throw InputError(fmt::format(text, std::forward<Parts>(parts)...));
+  throw Error(fmt::format(text, std::forward<Parts>(parts)...));
 }
 
 /// Returns `value` rounded to double.

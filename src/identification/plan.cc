@@ -29,13 +29,12 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
                               .cycles = protocol.cycles,
                               .samples_per_cycle = protocol.samples_per_cycle});
   loop::Record record{.displacement = std::move(excitation.displacement),
-                      .force = {},
+                      .force = std::vector<double>(excitation.time.size()),
                       .time = std::move(excitation.time)};
   const std::vector<std::size_t> reversals = loop::FindReversals(record.displacement, 0.0);
   const models::LoadingPath path =
       models::MakeLoadingPath(record.displacement, reversals, expected.model->memory,
                               {.state = models::InitialState::kSteady});
-  record.force.resize(record.size());
   models::EvaluateForce(*expected.model, expected.law, path, record.displacement, record.force,
                         expected.rig);
   return record;
@@ -92,9 +91,8 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
     RequirePositive(fmt::format("wanted precision of {}", name), precision.value);
     const ParameterEstimate* estimate = fit.Find(name);
     if (estimate == nullptr) {
-      throw InvalidArgument(
-          "parameter " +
-          UnknownAmong(name, fit.parameters | std::views::transform(&ParameterEstimate::name)));
+      const auto names = fit.parameters | std::views::transform(&ParameterEstimate::name);
+      Refuse<InvalidArgument>("parameter {}", UnknownAmong(name, names));
     }
     if (estimate->status == ParameterStatus::kFixed) continue;
     if (!estimate->standard_error) return std::numeric_limits<double>::infinity();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/refuse.h"
 #include "identification/inference/reweighting.h"
 #include "mindahl/core/error.h"
 
@@ -26,9 +27,9 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
   const std::string without = left_out == 0 ? ""
                                             : fmt::format("; of {} that were read {} are left out",
                                                           prepared.samples(), left_out);
-  throw InvalidArgument(
-      fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
-                  counted, free, without));
+  Refuse<InvalidArgument>(
+      "{} samples are too few for {} free parameters{}: record more or fix some", counted, free,
+      without);
 }
 
 /// Returns the initial state that the options name, else both where both are possible.

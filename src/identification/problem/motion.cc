@@ -1,7 +1,5 @@
 #include "identification/problem/motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/refuse.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 
@@ -267,10 +266,10 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     }
     record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
     if (record.left_out < record.size()) continue;
-    throw InvalidArgument(
-        fmt::format("lags of {:.6g} to {:.6g} move every sample of a record of {} beyond its ends: "
-                    "give smaller ones, --bound lag=LO:HI",
-                    lags.lower, lags.upper, record.size()));
+    Refuse<InvalidArgument>(
+        "lags of {:.6g} to {:.6g} move every sample of a record of {} beyond its ends: "
+        "give smaller ones, --bound lag=LO:HI",
+        lags.lower, lags.upper, record.size());
   }
 }
 

@@ -150,15 +150,14 @@ void RequireTerms(const ScaledRecords& data, const Parameters& parameters) {
     const Term& term = *parameters[p].term;
     if (parameters[p].absent) continue;
     if (term.needs_time && !is_timed) {
-      throw InvalidArgument(
-          fmt::format("{} needs the time of every sample in every record", term.name));
+      Refuse<InvalidArgument>("{} needs the time of every sample in every record", term.name);
     }
     if (!term.needs.empty() && parameters[parameters.PositionOf(FindTerm(term.needs)->id)].absent) {
-      throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
+      Refuse<InvalidArgument>("{} needs {}: add it", term.name, term.needs);
     }
     if (p > moving && term.motion != ContactMotion::kMeasured) {
-      throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
-                                        parameters[moving].term->name, term.name));
+      Refuse<InvalidArgument>("{} and {} cannot be in one fit: leave one of them out",
+                              parameters[moving].term->name, term.name);
     }
   }
 }
@@ -203,8 +202,8 @@ void KeepAboveLoops(const ScaledRecords& data, Parameter& slip_force) {
 void RequirePlace(const Term& term, loop::Channel response) {
   if (term.presence != Presence::kNever) return;
   const bool fits_force = response == loop::Channel::kForce;
-  throw InvalidArgument(fmt::format("{} has no place in a fit of the {}: leave it out", term.name,
-                                    fits_force ? "force" : "displacement"));
+  Refuse<InvalidArgument>("{} has no place in a fit of the {}: leave it out", term.name,
+                          fits_force ? "force" : "displacement");
 }
 
 bool HasTerm(const FitOptions& options, std::string_view name) {
@@ -308,10 +307,10 @@ Parameter& Parameters::Find(std::string_view name, std::string_view what) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (NameOf(i) != name) continue;
     if (parameters_[i].absent && parameters_[i].term->presence == Presence::kLoadSeries) {
-      throw InvalidArgument(fmt::format(
+      Refuse<InvalidArgument>(
           "{} has no effect: the records are not under loads that are known and differ by more "
           "than 1 %; give --normal-load N1,N2,...",
-          name));
+          name);
     }
     RequirePlace(*parameters_[i].term, loop::Other(excitation_));
     return parameters_[i];
@@ -320,7 +319,7 @@ Parameter& Parameters::Find(std::string_view name, std::string_view what) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (parameters_[i].term->presence != Presence::kNever) names.push_back(NameOf(i));
   }
-  throw InvalidArgument(fmt::format("{} {}", what, UnknownAmong(name, names)));
+  Refuse<InvalidArgument>("{} {}", what, UnknownAmong(name, names));
 }
 
 void Parameters::ApplyLimits(const FitOptions& options, bool is_steady) {
@@ -331,8 +330,8 @@ void Parameters::ApplyLimits(const FitOptions& options, bool is_steady) {
     const double upper = ThetaOf(parameter, "bound of " + name, to);
     const double lower = from == 0.0 ? open : ThetaOf(parameter, "bound of " + name, from);
     if (!(from < to)) {
-      throw InvalidArgument(
-          fmt::format("bounds {}:{} of {} are invalid: the first must be smaller", from, to, name));
+      Refuse<InvalidArgument>("bounds {}:{} of {} are invalid: the first must be smaller", from, to,
+                              name);
     }
     parameter.lower = std::min(lower, upper);
     parameter.upper = std::max(lower, upper);
@@ -343,15 +342,15 @@ void Parameters::ApplyLimits(const FitOptions& options, bool is_steady) {
     parameter.theta = ThetaOf(parameter, "fixed " + name, value);
     if (name == "alpha" && options.model->shape_exponent &&
         *options.model->shape_exponent != value) {
-      throw InvalidArgument(fmt::format(
+      Refuse<InvalidArgument>(
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
-          value, options.model->name, *options.model->shape_exponent));
+          value, options.model->name, *options.model->shape_exponent);
     }
     if (parameter.term->id == OriginId(excitation_) && is_steady) {
-      throw InvalidArgument(
-          fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
-                      "it for a virgin contact",
-                      name));
+      Refuse<InvalidArgument>(
+          "{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
+          "it for a virgin contact",
+          name);
     }
     parameter.fixed = true;
     parameter.absent = false;
@@ -367,8 +366,7 @@ void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
     RequirePositive(uncertainty, prior.standard_uncertainty);
     RequireNearUnit(parameter, uncertainty, prior.standard_uncertainty, true);
     if (parameter.absent || options.fixed.contains(name)) {
-      throw InvalidArgument(
-          fmt::format("a prior of {} has no effect: it is not fitted; leave it out", name));
+      Refuse<InvalidArgument>("a prior of {} has no effect: it is not fitted; leave it out", name);
     }
     if (parameter.fixed) continue;  // by the model, or in this initial state
     const double unit = parameter.term->positive ? prior.value : std::abs(parameter.scale);

@@ -137,13 +137,12 @@ std::vector<std::pair<TermId, double>> ChainRuleOf(const Problem& problem,
 }  // namespace
 
 double LogScaleAt(const Problem& problem, std::span<const double> theta) {
-  const bool is_forced = problem.data->is_forced();
-  return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
+  return theta[kSlipForce] - (problem.data->is_forced() ? theta[kStiffness] : 0.0);
 }
 
 ResponseColumns ResponseColumns::Of(const ScaledRecord& record) const {
   ResponseColumns part;
-  std::ranges::transform(columns_, part.columns_.begin(), [&](std::span<double> column) {
+  std::ranges::transform(*this, part.begin(), [&](std::span<double> column) {
     return column.empty() ? column : record.Of(column);
   });
   return part;
@@ -152,13 +151,12 @@ ResponseColumns ResponseColumns::Of(const ScaledRecord& record) const {
 Response::Response(const Problem& problem)
     : problem_(problem), moves_(problem.parameters.PositionOfMotion()) {
   const std::vector<ScaledRecord>& records = problem.data->records;
-  const bool is_late = Has(TermId::kLag);
   motions_.resize(records.size());
   turns_.resize(records.size());
   histories_.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
     const ScaledRecord& record = records[r];
-    turns_[r] = TurnsOf(is_late && record.whole != nullptr ? *record.whole : record);
+    turns_[r] = TurnsOf(Has(TermId::kLag) && record.whole != nullptr ? *record.whole : record);
     if (record.load_ratio.empty() || !IsMasing(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.initial_state, histories_[r]);

@@ -38,17 +38,11 @@ double LogScaleAt(const Problem& problem, std::span<const double> theta);
 
 /// Derivatives of t, a column each of all samples, by term: an empty one is not wanted. That of σ
 /// is by ln(σ/Tc), that of a rig by ln(Tc/k), that of the origin by where the contact is unloaded.
-class ResponseColumns {
- public:
-  [[nodiscard]] std::span<double>& operator[](TermId id) { return columns_[RowOf(id)]; }
-  [[nodiscard]] std::span<double> operator[](TermId id) const { return columns_[RowOf(id)]; }
-  [[nodiscard]] auto begin() const { return columns_.begin(); }
-  [[nodiscard]] auto end() const { return columns_.end(); }
+struct ResponseColumns : std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> {
+  [[nodiscard]] std::span<double>& operator[](TermId id) { return data()[RowOf(id)]; }
+  [[nodiscard]] std::span<double> operator[](TermId id) const { return data()[RowOf(id)]; }
   /// Returns those of a record's samples.
   [[nodiscard]] ResponseColumns Of(const ScaledRecord& record) const;
-
- private:
-  std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> columns_;
 };
 
 /// A problem near one point.

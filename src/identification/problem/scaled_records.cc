@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "core/refuse.h"
 #include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "loop/statistics.h"
@@ -132,9 +133,8 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
   const std::vector<double>& given = options.normal_loads;
   for (const double load : given) RequirePositive("normal load [N]", load);
   if (given.size() > 1 && given.size() != data.records.size()) {
-    throw InvalidArgument(
-        fmt::format("{} normal loads for {} records: give one for all, or one a record",
-                    given.size(), data.records.size()));
+    Refuse<InvalidArgument>("{} normal loads for {} records: give one for all, or one a record",
+                            given.size(), data.records.size());
   }
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const loop::PreparedRecord& record = records.records[r];
@@ -179,8 +179,7 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
       const auto& all = record.record.covariates;
       const auto found = std::ranges::find(all, name, &loop::Covariate::name);
       if (found == all.end()) {
-        throw InvalidArgument(
-            fmt::format("record {} has no covariate '{}'", columns.size() + 1, name));
+        Refuse<InvalidArgument>("record {} has no covariate '{}'", columns.size() + 1, name);
       }
       columns.push_back(&*found);
       scale = std::max(scale, ExtremesOf(found->values).half_range());
@@ -198,10 +197,10 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
       return AreOneChannel(record.covariates[own], record.force);
     };
     if (!std::ranges::all_of(data.records, is_force)) continue;
-    throw InvalidArgument(
-        fmt::format("the covariate '{}' is a linear function of 'force', one channel with it: "
-                    "leave it out",
-                    name));
+    Refuse<InvalidArgument>(
+        "the covariate '{}' is a linear function of 'force', one channel with it: "
+        "leave it out",
+        name);
   }
 }
 
