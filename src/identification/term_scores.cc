@@ -42,10 +42,8 @@ TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> insi
   const GramAxes axes = gram.AxesOfAll();
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
-  for (std::size_t c = 0; c < added.size(); ++c) {
-    const Term& term = *problem.parameters[added[c]].term;
-    const bool is_lower = step.omitted[static_cast<Eigen::Index>(c)] < 0;
-    score.is_negative |= is_lower && term.is_never_negative;
+  for (Eigen::Index c = 0; const std::size_t p : added) {
+    score.is_negative |= step.omitted[c++] < 0 && problem.parameters[p].term->is_never_negative;
   }
   for (std::size_t j = 0; j < inside.size() && inside[j] <= kSlipForce; ++j) {
     score.law[inside[j]] = step.law[static_cast<Eigen::Index>(j)];

@@ -67,13 +67,11 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
   const ScaledRecords& data = *problem.data;
-  const auto& free = problem.parameters.free();
   auto [jacobian, residual] = WithPriors(problem, solution.theta, fitted.linearization());
   // A parameter at a bound, the user's or the program's, cannot move: its column explains nothing.
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const std::size_t p = free[j];
-    if (SideOf(problem.parameters[p], solution.theta[p]) == BoundSide::kInside) continue;
-    jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+  for (Eigen::Index j = 0; const std::size_t p : problem.parameters.free()) {
+    auto column = jacobian.col(j++);
+    if (SideOf(problem.parameters[p], solution.theta[p]) != BoundSide::kInside) column.setZero();
   }
   const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);

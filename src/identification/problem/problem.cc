@@ -338,10 +338,10 @@ void AddLinearTerms(const Problem& problem, std::span<const double> theta, doubl
 
 void AddDerivativesOfColumns(const Problem& problem, std::span<const std::size_t> parameters,
                              std::span<const double> theta, Eigen::MatrixXd& columns) {
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Term& term = *problem.parameters[parameters[k]].term;
-    const auto column = columns.col(static_cast<Eigen::Index>(k));
-    if (term.is_linear) AddColumn(problem, parameters[k], theta, 1.0, column);
+  for (Eigen::Index k = 0; const std::size_t p : parameters) {
+    const Term& term = *problem.parameters[p].term;
+    const auto column = columns.col(k++);
+    if (term.is_linear) AddColumn(problem, p, theta, 1.0, column);
     for (std::size_t q = 0; !term.shapes.empty() && q < problem.parameters.size(); ++q) {
       const Term& linear = *problem.parameters[q].term;
       if (!linear.is_linear || !linear.name.starts_with(term.shapes)) continue;
@@ -373,9 +373,9 @@ void Response::Differentiate(std::span<const double> theta, std::span<const std:
   Evaluate(theta, SpanOf(t), gradient);
   gradient[kItself] = SpanOf(t);
   columns.setZero(t.size(), std::ssize(parameters));
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Parameter& parameter = problem_.parameters[parameters[k]];
-    const std::span<double> column = SpanOf(columns.col(static_cast<Eigen::Index>(k)));
+  for (Eigen::Index k = 0; const std::size_t p : parameters) {
+    const Parameter& parameter = problem_.parameters[p];
+    const std::span<double> column = SpanOf(columns.col(k++));
     for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
       const ScaledRecord& record = problem_.data->records[r];
       if (!IsInRecord(parameter, r)) continue;

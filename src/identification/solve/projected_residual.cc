@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace mindahl::identification {
 
@@ -15,21 +16,17 @@ ProjectedResidual::ProjectedResidual(const Problem& problem)
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_tied = parameter.has_prior() || parameter.bounded_by_user;
-    if (parameter.term->is_linear && !is_tied) {
-      theta_[p] = 0.0;
-      eliminated_.push_back(p);
-      continue;
-    }
-    theta_[p] = parameter.Clamp(theta_[p]);
-    searched_.push_back(p);
+    const bool is_eliminated = parameter.term->is_linear && !is_tied;
+    theta_[p] = is_eliminated ? 0.0 : parameter.Clamp(theta_[p]);
+    (is_eliminated ? eliminated_ : searched_).push_back(p);
   }
   FactoriseColumns();
 }
 
 Eigen::VectorXd ProjectedResidual::SearchedOf(std::span<const double> theta) const {
   Eigen::VectorXd u(std::ssize(searched_));
-  for (Eigen::Index j = 0; j < u.size(); ++j) {
-    u[j] = Searched(j).Clamp(theta[searched_[static_cast<std::size_t>(j)]]);
+  for (Eigen::Index j = 0; const std::size_t p : searched_) {
+    u[j++] = problem_.parameters[p].Clamp(theta[p]);
   }
   return u;
 }
@@ -76,9 +73,7 @@ Eigen::VectorXd ProjectedResidual::ProjectOut(Eigen::Ref<Eigen::VectorXd> column
 void ProjectedResidual::SolveLinear(std::span<double> theta) const {
   const Eigen::VectorXd values = triangle_.triangularView<Eigen::Upper>().solve(
       measured_products_ - scale_ * response_products_);
-  for (std::size_t k = 0; k < linear_.size(); ++k) {
-    theta[linear_[k]] = values[static_cast<Eigen::Index>(k)];
-  }
+  for (Eigen::Index k = 0; const std::size_t p : linear_) theta[p] = values[k++];
 }
 
 std::vector<double> ProjectedResidual::Theta() const {
@@ -89,12 +84,10 @@ std::vector<double> ProjectedResidual::Theta() const {
 
 void ProjectedResidual::MoveTo(const Eigen::VectorXd& u) {
   bool columns_move = false;
-  for (Eigen::Index j = 0; j < u.size(); ++j) {
-    const Term& term = *Searched(j).term;
-    double& theta = theta_[searched_[static_cast<std::size_t>(j)]];
-    const bool has_column = term.is_linear || !term.shapes.empty();
-    columns_move = columns_move || (has_column && theta != u[j]);
-    theta = u[j];
+  for (Eigen::Index j = 0; const std::size_t p : searched_) {
+    const Term& term = *problem_.parameters[p].term;
+    const double before = std::exchange(theta_[p], u[j++]);
+    columns_move |= before != theta_[p] && (term.is_linear || !term.shapes.empty());
   }
   if (columns_move) FactoriseColumns();
 }

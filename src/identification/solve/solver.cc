@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <utility>
 
 #include "identification/solve/projected_residual.h"
@@ -288,9 +287,8 @@ Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
                                         : "The solver made its maximum number of iterations.";
   bool is_evaluated = search.IsEvaluated();
   const auto side_of = [&](Eigen::Index j) { return SideOf(residual_.Searched(j), u[j]); };
-  const bool is_at_bound =
-      std::ranges::any_of(std::views::iota(Eigen::Index{0}, u.size()),
-                          [&](Eigen::Index j) { return side_of(j) != BoundSide::kInside; });
+  bool is_at_bound = false;
+  for (Eigen::Index j = 0; j < u.size(); ++j) is_at_bound |= side_of(j) != BoundSide::kInside;
   const int left = options.max_iterations - report.iterations;
   if (!options.is_rough && left > 0 && std::isfinite(cost) &&
       (!solution.converged || search.is_slow() || is_at_bound)) {

@@ -64,8 +64,8 @@ class UnprojectedResidual final : public ceres::CostFunction {
     }
     at.jacobian.array().colwise() *= slopes;
     std::ranges::copy(at.residual, residuals);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      std::ranges::copy(at.jacobian.col(static_cast<Eigen::Index>(k)), columns[k]);
+    for (Eigen::Index k = 0; double* const column : columns) {
+      std::ranges::copy(at.jacobian.col(k++), column);
     }
     return true;
   }
