@@ -16,8 +16,6 @@
 
 namespace mindahl::identification {
 
-using loop::Record;
-
 namespace {
 
 constexpr std::array kCycles = {1.0, 1.25, 2.0, 2.5, 3.0, 4.0};
@@ -50,11 +48,11 @@ Case DrawCase(std::size_t index, Draws& draws) {
 }
 
 /// Returns the loop by Mindlin's equations 13 to 15, phase by phase.
-Record MindlinRecord(const Case& drawn) {
+loop::Record MindlinRecord(const Case& drawn) {
   const models::Excitation excitation = models::MakeExcitation(drawn.excitation);
   const double amplitude = drawn.excitation.amplitude;
   const double per_cycle = static_cast<double>(drawn.excitation.samples_per_cycle);
-  Record record;
+  loop::Record record;
   record.time = excitation.time;
   for (const double x : excitation.displacement) {
     const double phase = static_cast<double>(record.size()) / per_cycle;
@@ -69,7 +67,7 @@ Record MindlinRecord(const Case& drawn) {
 }
 
 /// Adds a fit to its row, and returns what misses the tolerance; empty where nothing does.
-std::string Add(const Record& record, const models::BranchLaw& law, const FitResult& fit,
+std::string Add(const loop::Record& record, const models::BranchLaw& law, const FitResult& fit,
                 ValidationRow& row) {
   using Value = std::pair<const char*, double>;
   const std::array truth = {Value{"sigma", law.tangential_stiffness},
@@ -129,14 +127,14 @@ ValidationReport ValidateMapping(const ValidationOptions& options) {
   Draws draws(options.seed);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = DrawCase(index, draws);
-    const Record clean = MindlinRecord(drawn);
+    const loop::Record clean = MindlinRecord(drawn);
     const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
     const auto [least, greatest] = std::ranges::minmax(clean.force);
     const double peak = std::max(-least, greatest);
     for (std::size_t place = index % kLambdas.size(); place < report.rows.size();
          place += kLambdas.size()) {
       ValidationRow& row = report.rows[place];
-      Record noisy = clean;
+      loop::Record noisy = clean;
       for (double& force : noisy.force) force += row.noise * peak * draws.Normal();
       const std::string missed = Add(noisy, truth, Fit({&noisy, 1}), row);
       if (missed.empty()) continue;

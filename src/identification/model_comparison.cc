@@ -12,8 +12,6 @@
 
 namespace mindahl::identification {
 
-using loop::RecordView;
-
 namespace {
 
 constexpr std::size_t kFolds = 5;
@@ -40,8 +38,9 @@ std::vector<SampleRange> CyclesOf(const FitResult& fit) {
 /// the folds so that slow changes of the contact are in every one; empty where a fit failed.
 /// @param options  of these fits; what they hold out stays so
 /// @param counted  fit to all, whose samples that count are predicted
-std::optional<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
-                                    const FitResult& counted, std::span<const SampleRange> cycles) {
+std::optional<double> PredictCycles(std::span<const loop::RecordView> records,
+                                    const FitOptions& options, const FitResult& counted,
+                                    std::span<const SampleRange> cycles) {
   const std::size_t folds = std::min(kFolds, cycles.size());
   double squares = 0.0;
   double predicted = 0.0;
@@ -65,7 +64,7 @@ std::optional<double> PredictCycles(std::span<const RecordView> records, const F
 
 std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
                                       const FitOptions& options) {
-  const std::vector<RecordView> records(given.begin(), given.end());
+  const std::vector<loop::RecordView> records(given.begin(), given.end());
   if (options.response() != loop::Channel::kForce) {
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }

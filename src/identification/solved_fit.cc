@@ -16,8 +16,6 @@
 namespace mindahl::identification {
 namespace {
 
-using models::InitialState;
-
 /// Refuses fewer samples that count than free parameters, and says what was left out.
 void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
   const std::size_t free = problem.parameters.free().size();
@@ -33,14 +31,14 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 }
 
 /// Returns the initial state that the options name, else both where both are possible.
-std::vector<InitialState> StatesToTry(const Attempt& attempt) {
+std::vector<models::InitialState> StatesToTry(const Attempt& attempt) {
   if (attempt.options.initial_state) return {*attempt.options.initial_state};
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(TermOf(OriginId(attempt.data.excitation)).name);
   });
-  std::vector<InitialState> states = {InitialState::kVirgin};
+  std::vector<models::InitialState> states = {models::InitialState::kVirgin};
   if (!unloaded_is_given && std::ranges::any_of(attempt.data.records, &ScaledRecord::Turns)) {
-    states.push_back(InitialState::kSteady);
+    states.push_back(models::InitialState::kSteady);
   }
   return states;
 }
@@ -76,7 +74,7 @@ SolvedFit FitBestState(const Attempt& attempt) {
     SearchBesideMinimum(candidate, options);
   };
   std::vector<Candidate> candidates;
-  for (const InitialState state : StatesToTry(attempt)) {
+  for (const models::InitialState state : StatesToTry(attempt)) {
     candidates.push_back({.problem = {attempt.data, options, state}});
     RequireEnoughSamples(candidates.back().problem, attempt.prepared);
   }

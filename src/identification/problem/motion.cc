@@ -216,8 +216,7 @@ std::vector<models::Turn> TurnsOf(const ScaledRecord& record) {
     if (!at) at = SmoothTurn(about);
     const double farthest = std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i]));
     const double beyond = at ? sense * (*at - x[i]) : 0.0;
-    if (!(beyond > 0 && beyond <= farthest)) continue;
-    turn = {record.reversals[k] + (is_before ? 0U : 1U), *at};
+    if (beyond > 0 && beyond <= farthest) turn = {record.reversals[k] + (is_before ? 0U : 1U), *at};
   }
   return turns;
 }

@@ -73,13 +73,10 @@ void RequireNearUnit(const Parameter& parameter, std::string_view quantity, doub
 double ThetaOf(const Parameter& parameter, std::string_view name, double value) {
   const Term& term = *parameter.term;
   const std::string quantity = fmt::format("{} [{}]", name, term.unit);
-  if (term.positive || term.lowest > 0) {
-    RequirePositive(quantity, value);
-  } else if (term.lowest == 0) {
-    RequireNonNegative(quantity, value);
-  } else {
-    RequireFinite(quantity, value);
-  }
+  const auto require = term.positive || term.lowest > 0 ? RequirePositive
+                       : term.lowest == 0               ? RequireNonNegative
+                                                        : RequireFinite;
+  require(quantity, value);
   if (term.id == TermId::kAsymmetry && !(std::abs(value) < 1)) {
     ThrowInvalid(quantity, value, "must be in (-1, 1)");
   }

@@ -284,11 +284,9 @@ void Response::ScaleBySlipForce(const ScaledRecord& record, std::span<const doub
   if (!record.log_speed.empty()) {
     log_speed = ArrayOf(record.log_speed) - std::log(record.units.reference_speed);
   }
-  Eigen::ArrayXd change = Eigen::ArrayXd::Zero(position.size());
-  if (Has(TermId::kSlipSpeed)) {
-    const double exponent = value(TermId::kSlipSpeedExponent);
-    change = log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
-  }
+  const double exponent = value(TermId::kSlipSpeedExponent);
+  const Eigen::ArrayXd change =
+      log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
   const Eigen::ArrayXd factor =
       1 +
       (position * (value(TermId::kSlipSlope) + value(TermId::kSlipCurvature) * position) +
