@@ -69,12 +69,10 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
   const auto alpha = options.fixed.find("alpha");
+  const bool holds_alpha = alpha != options.fixed.end();
   std::vector<std::pair<FitOptions, FitResult>> compared;
   for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (model.shape_exponent && alpha != options.fixed.end() &&
-        *model.shape_exponent != alpha->second) {
-      continue;
-    }
+    if (holds_alpha && model.shape_exponent.value_or(alpha->second) != alpha->second) continue;
     for (const bool rig : {false, true}) {
       const bool may_have_rig =
           !options.fixed.contains("rig_stiffness") &&

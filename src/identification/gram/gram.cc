@@ -78,16 +78,14 @@ double Gram::IndependentTests() const {
 
 GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& at) const {
   GramAxes axes;
-  const Eigen::MatrixXd free = free_(at, at);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free_(at, at));
   constexpr double kLeast =
       1e-6;  // square of the norm of an axis that is independent of the others
   const Eigen::Index count = (pairs.eigenvalues().array() > kLeast).count();  // the last ones
   axes.values = pairs.eigenvalues().tail(count).array();
   axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);
   axes.vectors(at, Eigen::all) = pairs.eigenvectors().rightCols(count);
-  const Eigen::ArrayXd norms = axes.values.sqrt();
-  axes.coefficients = (axes.vectors.transpose() * free_residual_).array() / norms;
+  axes.coefficients = (axes.vectors.transpose() * free_residual_).array() / axes.values.sqrt();
   const Eigen::MatrixXd noise = free_noise_ * axes.vectors;
   axes.noise =
       (axes.vectors.cwiseProduct(noise).colwise().sum().transpose().array() / axes.values).max(1.0);

@@ -48,8 +48,7 @@ std::optional<double> SmoothTurn(const FiveSamples& about) {
   std::array<double, 3> curvatures{};
   for (std::size_t k = 0; k < 3; ++k) curvatures[k] = about.Velocity(k + 1) - about.Velocity(k);
   const auto [least, greatest] = std::ranges::minmax(curvatures);
-  const double sense = greatest > 0 ? 1.0 : -1.0;
-  const double weakest = sense > 0 ? least : -greatest;
+  const double weakest = greatest > 0 ? least : -greatest;
   if (!(weakest > kSmooth * std::max(std::abs(least), std::abs(greatest)))) return std::nullopt;
   std::array<double, 5> c{};  // Newton's form
   std::ranges::copy(about.x, c.begin());
@@ -169,8 +168,7 @@ std::vector<models::Turn> MoveBehindGap(const ScaledRecord& record,
   double from = 0.0;
   if (initial.state == models::InitialState::kVirgin) {
     // The contact is unloaded in the middle of the gap.
-    const double travel = x.front() - initial.unloaded_displacement;
-    from = x.front() - std::clamp(travel, -half, half);
+    from = x.front() - std::clamp(x.front() - initial.unloaded_displacement, -half, half);
   } else {
     const double direction = strokes.front().direction;
     from = x.front() + direction * half;

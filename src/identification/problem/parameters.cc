@@ -214,8 +214,7 @@ BoundSide SideOf(const Parameter& parameter, double theta) {
   if (parameter.fixed) return BoundSide::kInside;
   constexpr double kAtBound = 1e-9;
   constexpr double kWide = 1e3;
-  const double distance = parameter.upper - parameter.lower;
-  const double tolerance = kAtBound * std::clamp(distance, 1.0, kWide);
+  const double tolerance = kAtBound * std::clamp(parameter.upper - parameter.lower, 1.0, kWide);
   if (theta - parameter.lower <= tolerance) return BoundSide::kLower;
   if (parameter.upper - theta <= tolerance) return BoundSide::kUpper;
   return BoundSide::kInside;

@@ -322,8 +322,7 @@ const Term* TermOfParameter(std::string_view parameter) {
 std::string NameOfCovariate(std::string_view column) {
   std::string name = "covariate_";
   for (const char letter : column) {
-    const bool is_quoted = std::string_view(" \t=:;,.[](){}'\"").find(letter) != column.npos;
-    name += is_quoted ? '_' : letter;
+    name += std::string_view(" \t=:;,.[](){}'\"").find(letter) != column.npos ? '_' : letter;
   }
   return name;
 }

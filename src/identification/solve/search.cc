@@ -315,8 +315,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned
     if (terms.size() <= kMostNested) AddStartsOfSmallerModels(smaller, thinned, options);
     Descend(smaller, options);
     const Solution& solution = smaller.solution;
-    if (!std::isfinite(solution.sum_of_squares)) continue;
-    candidate.starts.push_back(solution.theta);
+    if (std::isfinite(solution.sum_of_squares)) candidate.starts.push_back(solution.theta);
   }
 }
 

@@ -194,8 +194,7 @@ class TinySearch {
     }
     const double left = compressed_.Explained();
     if (is_slow_ || left <= options_.function_tolerance * at_.cost) return;
-    const double rounding = samples * kRoundingRms * kRoundingRms;
-    is_last_ = left <= kLastStep * at_.cost && at_.cost > rounding;
+    is_last_ = left <= kLastStep * at_.cost && at_.cost > samples * kRoundingRms * kRoundingRms;
     rows = compressed_.residual;
     columns = compressed_.jacobian;
   }

@@ -87,8 +87,7 @@ void AddResidualBlock(const Problem& problem, double unit,
   std::vector<std::size_t> positions;
   std::vector<double*> blocks;
   for (const std::size_t p : parameters.reported()) {
-    const bool is_origin = p == parameters.PositionOfOrigin(parameters[p].record);
-    if (!problem.is_virgin() && is_origin) continue;
+    if (!problem.is_virgin() && p == parameters.PositionOfOrigin(parameters[p].record)) continue;
     positions.push_back(p);
     blocks.push_back(block_of(p));
   }
