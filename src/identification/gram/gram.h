@@ -5,8 +5,7 @@
 
 namespace mindahl::identification {
 
-/// Columns that are independent of each other and of the law's: orthonormal combinations of some of
-/// C's, freed of J.
+/// Orthonormal combinations of some of C's columns, freed of J.
 struct GramAxes {
   Eigen::MatrixXd vectors;      // by C's columns of unit norm, a column each
   Eigen::ArrayXd values;        // squares of their norms, before they were made one

@@ -22,14 +22,13 @@ std::vector<models::Turn> TurnsOf(const ScaledRecord& record);
 /// @returns how far beyond a sample any turns [half range]
 double TurnBetweenSamples(ScaledRecords& data);
 
-/// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
-/// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.
+/// Returns the longest lag that is looked for, either way [mean cycles]: ten samples, as the delay
+/// of a filter is one of samples, but at least 0.05 and at most 0.2.
 double LongestLag(std::size_t samples, std::size_t reversals);
 
-/// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
-/// not count; they still make history.
-/// @throws InvalidArgument where nothing is left of a record, where some records have a time and
-///   others not, or one never goes on
+/// Makes samples whose displacement lies beyond the record's ends under any lag that the options
+/// allow not count; they still make history.
+/// @throws InvalidArgument where nothing is left of a record, or only some have a time that goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
 /// A path of a contact along its record.

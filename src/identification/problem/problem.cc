@@ -152,14 +152,13 @@ Response::Response(const Problem& problem)
     : problem_(problem), moves_(problem.parameters.PositionOfMotion()) {
   const std::vector<ScaledRecord>& records = problem.data->records;
   motions_.resize(records.size());
-  turns_.resize(records.size());
-  histories_.resize(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const ScaledRecord& record = records[r];
-    turns_[r] = TurnsOf(Has(TermId::kLag) && record.whole != nullptr ? *record.whole : record);
+  for (const ScaledRecord& record : records) {
+    const bool is_part = Has(TermId::kLag) && record.whole != nullptr;
+    turns_.push_back(TurnsOf(is_part ? *record.whole : record));
+    models::LoadedHistory& history = histories_.emplace_back();
     if (record.load_ratio.empty() || !IsMasing(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
-                              problem.initial_state, histories_[r]);
+                              problem.initial_state, history);
   }
 }
 
@@ -218,9 +217,8 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
   if (moves_ >= problem_.parameters.size()) return;
   const std::span<double> by_amount = columns[problem_.parameters[moves_].term->id];
   if (by_amount.empty()) return;
-  // The rounding of a difference by this much of θ is 1e-9 of the slip force. It is that of a
-  // longer lag and a wider gap: without either the response has a kink.
-  constexpr double kStep = 1e-7;
+  // Of a longer lag or a wider gap: without either the response has a kink.
+  constexpr double kStep = 1e-7;  // by which the difference is rounded to 1e-9 of the slip force
   Motion here = std::exchange(motions_[r], {});
   std::vector<double> beside(theta.begin(), theta.end());
   beside[moves_] += kStep;

@@ -70,8 +70,7 @@ inline std::span<double> SpanOf(Eigen::Ref<Eigen::VectorXd> column) {
   return {column.data(), static_cast<std::size_t>(column.size())};
 }
 
-/// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
-/// differences between fits mean nothing.
+/// Rms residual of a noise-free record, by rounding alone [of the force unit].
 inline constexpr double kRoundingRms = 1e-13;
 
 /// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.
@@ -118,13 +117,12 @@ struct ScaledRecords {
 };
 
 /// Makes the records of a fit from prepared ones, of which samples beyond any lag that the options
-/// allow are left out (motion.h). Every sample that counts does so alike. There are the columns
-/// that the terms need (accelerations, speeds), and covariates: each less the middle of its range
-/// in the record, so that the offset of the force keeps its meaning; literally where there are no
-/// offsets. The normal loads of the records are those of the options, else the means of their
-/// columns over what counts; they are a series where the largest is beyond the smallest by more
-/// than the threshold. A column that varies by more than its threshold enters the law where that
-/// knows such loads. A reading below 0 is lift-off, of Dahl's own law a load from the other side.
+/// allow are left out (motion.h), with the columns that the terms need (accelerations, speeds), and
+/// covariates: each less the middle of its range in the record, so that the offset of the force
+/// keeps its meaning; literally where there are no offsets. Normal loads are those of the options,
+/// else the means of their columns over what counts, and a series where they differ by more than
+/// the threshold. A column that varies by more than it enters the law where that knows such loads;
+/// a reading below 0 is lift-off, of Dahl's own law a load from the other side.
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 ///   more than 1e100, for loads that are not one for all or one a record, and positive, and where a
 ///   record has no covariate that is fitted, or it never changes, or is the force in other units
@@ -151,8 +149,7 @@ std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals);
 
 /// Returns the records by fewer samples: all reversals, and of each stroke some, densest at its
-/// start: the same history for a law that knows no rate, at a fraction of the cost.
-/// @param data  must outlive them
+/// start: the same history for a law that knows no rate. The records given must outlive them.
 ScaledRecords Thinned(const ScaledRecords& data);
 
 /// Returns the correlation of two columns of one size; 0 where one is constant.

@@ -197,8 +197,7 @@ std::vector<std::vector<double>> Neighbours(const Problem& problem,
       theta[kSlipForce] = std::min(theta[kSlipForce], 0.0);
     }
   }
-  // Virgin contacts unloaded at their first samples, where the search has led away from these: a
-  // thinned record of much noise may have.
+  // Virgin contacts unloaded at their first samples, from which noise may have led the search away.
   std::vector<double> at_first = UnloadedAtFirst(problem, solution);
   const bool has_moved = !std::ranges::equal(
       solution, at_first, [](double now, double first) { return std::abs(now - first) <= kAway; });
@@ -337,8 +336,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options) {
   constexpr double kLower = 1 - 1e-6;
   constexpr int kSteps = 100;  // in which a way down shows
   const SolverOptions search = SolverOptionsOf(options);
-  SolverOptions look = search;
-  look.max_iterations = std::min(search.max_iterations, kSteps);
+  const SolverOptions look{.max_iterations = std::min(options.max_iterations, kSteps)};
   Solver solver(candidate.problem);
   double last = kNoCost;
   for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {

@@ -13,10 +13,9 @@ namespace mindahl::identification {
 /// Adds the weighted residuals of a problem, model − measured over a unit, of every sample, with
 /// their analytic Jacobian, as one residual block. Its parameter blocks, each a θ, are those of the
 /// parameters that the fit reports, but for the reference position of a steady contact, which has
-/// no effect. With a loss each residual r is sgn(r)·√ρ(r²), of which half the square is the loss.
+/// no effect. With a loss, or null, each residual r is sgn(r)·√ρ(r²), half of whose square it is.
 /// @param problem   must outlive `to`
 /// @param unit      by which residuals are divided [units of the data]
-/// @param loss      may be null: least squares
 /// @param block_of  returns the block of the parameter at a position
 void AddResidualBlock(const Problem& problem, double unit,
                       std::unique_ptr<ceres::LossFunction> loss,
