@@ -13,7 +13,7 @@ namespace mindahl::identification {
 /// take their least-squares values at every point, and the residual depends on the others alone.
 /// Its Jacobian is Kaufman's: the derivatives of the response, orthogonal to the columns that are
 /// eliminated, of which Eigen's QR makes a basis. Linear parameters that the user bounds, and those
-/// with a prior, are searched too; the residuals of priors are in the cost, not in residual().
+/// with a prior, are searched too; the residuals of priors are in the cost alone.
 class ProjectedResidual {
  public:
   /// @param problem  must outlive this; neither it nor the weights of its samples may change

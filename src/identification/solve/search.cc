@@ -55,8 +55,11 @@ double FarthestFrom(const Problem& problem, std::span<const double> theta) {
   return farthest;
 }
 
-/// Writes the cost of a look, and what is found there into its θ.
-void LookAt(Solver& solver, Look& look) {
+/// Looks from θ of a look, whose α, origins and terms stay, and keeps what is found if it is
+/// better.
+void KeepBetter(Solver& solver, Look& best, Look look) {
+  // Without slip nothing depends on the reach: of equals the last, nearest to slip.
+  constexpr double kEqual = 1 + 1e-9;
   const Problem& problem = solver.problem();
   const Parameters& parameters = problem.parameters;
   const Parameter& stiffness = parameters[kStiffness];
@@ -97,17 +100,10 @@ void LookAt(Solver& solver, Look& look) {
   for (const std::size_t p : parameters.free()) {
     const double inside = parameters[p].Clamp(theta[p]);
     // Columns far beyond their bounds make a straight line of any loop.
-    if (parameters[p].term->is_linear && inside != theta[p]) look.cost = kNoCost;
+    if (parameters[p].term->is_linear && inside != theta[p]) return;
     theta[p] = inside;
   }
-}
-
-/// Looks from θ of a look, whose α, origins and terms stay, and keeps it where it is better.
-void KeepBetter(Solver& solver, Look& best, Look look) {
-  // Without slip nothing depends on the reach: of equals the last, nearest to slip.
-  constexpr double kEqual = 1 + 1e-9;
-  LookAt(solver, look);
-  if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = std::move(look);
+  if (look.cost <= kEqual * best.cost) best = std::move(look);
 }
 
 /// Returns θ with contacts that are unloaded at their first samples, where that is not held.
