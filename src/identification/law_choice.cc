@@ -29,8 +29,8 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
   });
 }
 
-/// Returns what lies before the first turns of records of unknown past: they begin under a force,
-/// or on their later loop.
+/// Returns what lies before the first turns of records of unknown initial state: they begin under a
+/// force or on their later loop, or have no whole stroke.
 /// @param dahl  fit of Dahl's own law
 std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
                                      const ScaledRecords& data, const FitResult& fit,

@@ -64,7 +64,7 @@ void CountSamples(Report& report) {
     LeaveOut(others, file,
              is_selected              ? "selection"
              : report.fit.Find("lag") ? "lag"
-                                      : "unknown past",
+                                      : "unrecorded turn",
              report.left_out);
     if (file.left_out.count > 0) {
       report.left_out.push_back({file.name, file.left_out.count, 0, 0, "not whole"});

@@ -34,6 +34,16 @@ Record TwoAmplitudes(const char* model, double first, double second) {
   return From(record, kPerCycle / 4);
 }
 
+/// Six cycles of Masing's law with an amplitude that grows by a fraction, in all.
+Record Growing(double fraction) {
+  History displacement = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);
+  const auto samples = static_cast<double>(displacement.size());
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] *= 1 + fraction * static_cast<double>(i) / samples;
+  }
+  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+}
+
 Record Noisy(const Record& record, std::uint64_t seed = 7) {
   Generator generator(seed);
   return WithForceNoise(record, kNoise, generator);
@@ -143,13 +153,7 @@ TEST(LawChoice, IsNotMadeByReadingsOfFewSteps) {
 
 TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
   // An amplitude that grows by 2 %, from the middle of a stroke on.
-  const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);
-  History displacement = cycles;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    displacement[i] *= 1 + 0.02 * static_cast<double>(i) / static_cast<double>(cycles.size());
-  }
-  const Record whole =
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+  const Record whole = Growing(0.02);
   for (const std::size_t begin : {kPerCycle / 8, 3 * kPerCycle / 8, 7 * kPerCycle / 8}) {
     const FitResult fit = FitOne(Noisy(From(whole, kPerCycle + begin)));
     ASSERT_TRUE(fit.law_choice);
@@ -160,13 +164,7 @@ TEST(LawChoice, IsNotMadeForDahlsLawByThePastOfAnExcerpt) {
 TEST(LawChoice, IsNotMadeByALoopThatIsCutWhereItsForceIsZero) {
   // There Dahl's contact is unloaded. The first stroke of Masing's began at a turn that is not
   // recorded, 3 % nearer than the later ones: it is left out.
-  const History cycles = Cycling(Wave::kSine, 1.3 * kGrossSlip, 6.0, kPerCycle);
-  History displacement = cycles;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    displacement[i] *= 1 + 0.1 * static_cast<double>(i) / static_cast<double>(cycles.size());
-  }
-  const Record whole =
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+  const Record whole = Growing(0.1);
   std::size_t zero = 7 * kPerCycle / 4;
   while (whole.force[zero] < 0) ++zero;
   const FitResult fit = FitOne(Noisy(From(whole, zero)));
