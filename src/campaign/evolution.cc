@@ -82,8 +82,11 @@ std::vector<double> SquaredBends(Bins bins) {
   return squares;
 }
 
-/// Returns the variance of a value that squared bends show, over the median of χ² with one degree.
-double VarianceOf(std::vector<double> squares) { return loop::Median(squares) / 0.455; }
+/// Returns the variance of a value that squared bends show.
+double VarianceOf(std::vector<double> squares) {
+  constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
+  return loop::Median(squares) / kMedianOfChiSquared;
+}
 
 /// Returns the least variance of a value, in as many as a bin counts.
 double FloorOf(const Course::Bin& bin) { return bin.count * std::pow(kExact * bin.value, 2); }
@@ -572,7 +575,7 @@ io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
                             .shade = static_cast<double>(panel.series.size()) /
                                      std::max(static_cast<double>(cycles.size()) - 1, 1.0)});
   }
-  const report::Units& units = report::UnitsOf(is_torsional);
+  const report::Units units = report::UnitsOf(is_torsional);
   report::ScaleAxes(panel, is_torsional ? "angle" : "displacement", units.displacement,
                     is_torsional ? "torque" : "force", units.force);
   return panel;

@@ -286,8 +286,8 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
         [&target, option, form, parse](const std::string& text) {
           const auto [name, value] = Split(text, '=');
           const Term* term = identification::FindTerm(identification::TermNameOf(name));
-          auto parsed =
-              parse(value, term == nullptr ? "-" : term->unit);  // the fit knows all names
+          // The fit refuses a name that is none.
+          auto parsed = parse(value, term == nullptr ? "-" : term->unit);
           if (name.empty()) parsed.reset();
           GiveOnce(option, name, Read(std::move(parsed), option, text, form), target);
         },

@@ -107,8 +107,12 @@ Plan MakePlan(const PlanOptions& options) {
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
   if (!options.record.empty()) {
     TakeRecord(options, plan);
-  } else if (expected.law = ResolveLaw(options.law); !options.force_noise) {
-    Refuse("--force-noise missing: give the standard deviation of the force's noise, or --record");
+  } else {
+    expected.law = ResolveLaw(options.law);
+    if (!options.force_noise) {
+      Refuse(
+          "--force-noise missing: give the standard deviation of the force's noise, or --record");
+    }
   }
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (options.displacement_noise) expected.displacement_noise = *options.displacement_noise;

@@ -13,7 +13,7 @@
 
 namespace mindahl {
 
-/// @throws InputError of a text always, or what is named
+/// Throws an InputError, or the Error that is named, with the formatted text.
 template <typename Error = InputError, typename... Parts>
 [[noreturn]] void Refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
   throw Error(fmt::format(text, std::forward<Parts>(parts)...));

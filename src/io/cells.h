@@ -24,7 +24,8 @@ bool IsBlankOrComment(std::string_view line);
 /// Separates the cells of a row; kBlanks is any run of spaces and tabs.
 inline constexpr char kBlanks = ' ';
 
-/// Takes the cells off a row (RFC 4180) without blanks around them; behind a last delimiter is one.
+/// Takes the cells off a row (RFC 4180) without blanks around them; a trailing delimiter makes an
+/// empty cell.
 class CellCursor {
  public:
   CellCursor(std::string_view row, char delimiter) : delimiter_(delimiter) {
@@ -41,7 +42,8 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
-  /// Takes the next cell if it is a number with a decimal point and no sign of plus; else false.
+  /// Takes the next cell if it is a number with a decimal point and no sign of plus; returns false
+  /// and takes nothing where it is none.
   bool TakeNumber(double& value) {
     const char* const begin = SkipBlanks(at_);
     const char* digits = begin;

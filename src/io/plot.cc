@@ -72,7 +72,11 @@ class Axis {
     const double middle = (At(least) + At(greatest)) / 2;
     from_ = middle - (0.5 + margin) * span;
     to_ = middle + (0.5 + margin) * span;
-    is_logarithmic ? PlaceTicsOfPowers() : PlaceTics();
+    if (is_logarithmic) {
+      PlaceTicsOfPowers();
+    } else {
+      PlaceTics();
+    }
   }
 
   [[nodiscard]] double Pixel(double value) const {

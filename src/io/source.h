@@ -28,7 +28,8 @@ class LinePieces {
   ///   spreadsheet, and for a name that iconv does not know
   explicit LinePieces(const std::filesystem::path& path, std::string encoding = {});
 
-  /// Returns whole lines, the last perhaps without its end; "" at the end. Valid until the next.
+  /// Returns whole lines, the last of the file perhaps without its end; "" at the end of the file.
+  /// Valid until the next call.
   /// @throws InputError where the file cannot be read, is not in its encoding, holds a zero byte,
   ///   or has a line of more than 16 MiB
   std::string_view Next();

@@ -52,7 +52,8 @@ struct Layout {
   std::string names_row = {}, units_row = {};  // as they stand in the file: blocks repeat them
 };
 
-/// Fills a table from a file, piece by piece: 0.1 s for 10⁶ cells, in 8 bytes a number.
+/// Fills a table from a file, plain or compressed by gzip, piece by piece: 0.1 s for 10⁶ cells, in
+/// 8 bytes a number.
 class TableReader {
  public:
   /// Finds the layout.

@@ -40,10 +40,9 @@ void ReadMotion(PreparedRecord& prepared, const PreparationOptions& options) {
   prepared.reversals = FindReversals(excitation, prepared.gate.gate);
   prepared.encoder_step = EncoderStep(displacement);
   if (is_force) return;
-  const auto [lowest, highest] = ExtremesOf(displacement);
   // [of half the range] The rounding of a file, or of a fine encoder, is not worth it.
   constexpr double kCoarse = 2e-4;
-  const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
+  const bool is_coarse = prepared.encoder_step > kCoarse * ExtremesOf(displacement).half_range();
   if (options.displacement_noise) {
     prepared.displacement_noise = noise;
   } else if (prepared.gate.gate > 0 || is_coarse) {

@@ -9,8 +9,9 @@ using Shape = GeneralShape<long double>;
 constexpr long double kSeriesLimit = 0.5L;
 constexpr int kTerms = 80;
 
-/// Between these α the integral follows from u^{2−α}, outside them from the slip y − φ: singular at
-/// α = 2 only, it cancels less there, as 1 against α below, 1 against αy above.
+/// Between these α the integral follows from u^{2−α}, outside them from the slip y − φ, by a
+/// formula that is singular at α = 2 only and cancels less: as 1 against α below, 1 against αy
+/// above.
 constexpr long double kNearlyElastic = 0.5L;
 constexpr long double kSoon = 4.0L;
 

@@ -103,13 +103,25 @@ SteadyPeak DahlPeak(double y, double shape_exponent) {
 }
 
 constexpr std::array kModels = {
-    FrictionModel{"mindlin-dahl", "Masing law with free shape exponent (Full-Dahl)",
-                  Memory::kReturnPoint, std::nullopt, MasingScale, MasingPeak},
-    FrictionModel{"mindlin", "Mindlin's sphere contact", Memory::kReturnPoint, 1.0 / 3, MasingScale,
-                  MasingPeak},
-    FrictionModel{"jenkins", "Jenkins element: spring and Coulomb slider", Memory::kReturnPoint,
-                  0.0, MasingScale, MasingPeak},
-    FrictionModel{"dahl", "Dahl's own law", Memory::kNone, std::nullopt, DahlScale, DahlPeak},
+    FrictionModel{.name = "mindlin-dahl",
+                  .title = "Masing law with free shape exponent (Full-Dahl)",
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "mindlin",
+                  .title = "Mindlin's sphere contact",
+                  .shape_exponent = 1.0 / 3.0,
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "jenkins",
+                  .title = "Jenkins element: spring and Coulomb slider",
+                  .shape_exponent = 0.0,
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "dahl",
+                  .title = "Dahl's own law",
+                  .memory = Memory::kNone,
+                  .scale = DahlScale,
+                  .steady_peak = DahlPeak},
 };
 
 }  // namespace

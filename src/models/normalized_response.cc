@@ -135,7 +135,9 @@ double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) 
 void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLaw& law,
                                   const LoadingPath& path, std::span<const double> displacement,
                                   std::span<double> t, const NormalizedGradient& gradient) {
-  const BranchLaw branch_law = {law.rate, law.shape_exponent, 1.0};
+  // Forces are over Tc.
+  const BranchLaw branch_law = {
+      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
   if (IsEmpty(gradient)) {

@@ -12,8 +12,9 @@ namespace {
 
 /// Makes a law in long double: a power of α multiplies the error of its logarithm by α.
 BranchLaw Made(long double stiffness, double shape_exponent, long double slip_force) {
-  const BranchLaw law = {static_cast<double>(stiffness), shape_exponent,
-                         static_cast<double>(slip_force)};
+  const BranchLaw law = {.tangential_stiffness = static_cast<double>(stiffness),
+                         .shape_exponent = shape_exponent,
+                         .slip_force = static_cast<double>(slip_force)};
   Validate(law);
   return law;
 }

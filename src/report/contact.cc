@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/probability.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
@@ -89,7 +88,8 @@ constexpr std::array kQuantities = {
     QuantityRow{{"maximum_pressure", "p₀", "Pa", "sigma"}, -2, Kind::kMaximumPressure},
 };
 
-/// False where a loop that slides measures another force there: the offset is then the asymmetry's.
+/// False where a loop that slides measures another force in that direction: the asymmetry and the
+/// offset of the force are then confounded.
 bool IsThatOfThePlateau(const FitResult& fit, double sense, double force) {
   const RecordFit& record = fit.WidestRecord();
   const loop::LoopFacts& facts = record.facts;

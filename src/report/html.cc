@@ -53,9 +53,10 @@ std::string ListHtml(const std::vector<std::string>& sentences) {
   return html + "</ul>\n";
 }
 
-std::string VerdictHtml(std::string_view style, std::string_view word, std::string_view sentence) {
-  return fmt::format("<p class=\"verdict {}\"><strong>{}</strong>{}{}</p>\n", style, HtmlText(word),
-                     sentence.empty() ? "" : ": ", HtmlText(sentence));
+std::string VerdictHtml(std::string_view css_class, std::string_view word,
+                        std::string_view sentence) {
+  return fmt::format("<p class=\"verdict {}\"><strong>{}</strong>{}{}</p>\n", css_class,
+                     HtmlText(word), sentence.empty() ? "" : ": ", HtmlText(sentence));
 }
 
 std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,

@@ -21,7 +21,8 @@ std::string SectionHtml(std::string_view heading, const std::string& body);
 
 std::string ParagraphHtml(std::string_view text);
 std::string ListHtml(const std::vector<std::string>& sentences);
-std::string VerdictHtml(std::string_view style, std::string_view word, std::string_view sentence);
+std::string VerdictHtml(std::string_view css_class, std::string_view word,
+                        std::string_view sentence);
 
 /// Holds a row of a table.
 struct TableLine {

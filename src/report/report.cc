@@ -52,6 +52,10 @@ void CountSamples(Report& report) {
   for (const LeftOut& part : report.left_out) report.samples += part.samples;
   const loop::PreparationOptions& chosen = report.options.preparation;
   const bool is_selected = chosen.load_window || chosen.samples || chosen.cycles;
+  // Of the options: a fit that failed has no parameters.
+  const bool has_lag =
+      report.options.fixed.contains("lag") || std::ranges::count(report.options.terms, "lag") > 0;
+  const char* const why = is_selected ? "selection" : has_lag ? "lag" : "unrecorded turn";
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const RecordFit& fit = report.fit.records[r];
     const io::RecordFile& file = report.records[r];
@@ -61,11 +65,7 @@ void CountSamples(Report& report) {
       if (fit.counts[i] == 0 && !std::ranges::binary_search(fit.glitches, i)) others.push_back(i);
     }
     LeaveOut(fit.glitches, file, "faults", report.left_out);
-    LeaveOut(others, file,
-             is_selected              ? "selection"
-             : report.fit.Find("lag") ? "lag"
-                                      : "unrecorded turn",
-             report.left_out);
+    LeaveOut(others, file, why, report.left_out);
     if (file.left_out.count > 0) {
       report.left_out.push_back({file.name, file.left_out.count, 0, 0, "not whole"});
     }

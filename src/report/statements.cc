@@ -58,8 +58,7 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
      "the force reads {limit:force} in {share%} of the samples, to the last digit: the sensor is "
-     "at "
-     "its limit, and Tc is no less"},
+     "at its limit, and Tc is no less"},
     {"not_identifiable.few_places",
      "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
      "often"},

@@ -41,6 +41,7 @@ constexpr std::string_view Name(identification::Use use) {
 }
 
 /// Names several files by the name of the first, without its directory: "loop.csv and 2 more".
+/// @param files  at least one
 std::string NameOf(std::span<const std::string> files);
 
 /// True if the adequacy was judged: the fit did not fail, and omitted terms were tried.

@@ -28,16 +28,17 @@ using report::Json;
 namespace {
 
 /// A quantity that repeats of a test have in common, by the names of its columns.
-const struct Repeated {
+struct Repeated {
   std::string name;
   std::string parameter;  // whose errors it has; "" of what is measured, which states none
   std::string_view unit;
-} kRepeated[] = {{"sigma", "sigma", "N/m"},
-                 {"alpha", "alpha", "-"},
-                 {"slip_force", "slip_force", "N"},
-                 {"friction_coefficient", "slip_force", "-"},
-                 {"half_gap", "", "N"},
-                 {"energy_per_cycle", "", "J"}};
+};
+const auto kRepeated = std::to_array<Repeated>({{"sigma", "sigma", "N/m"},
+                                                {"alpha", "alpha", "-"},
+                                                {"slip_force", "slip_force", "N"},
+                                                {"friction_coefficient", "slip_force", "-"},
+                                                {"half_gap", "", "N"},
+                                                {"energy_per_cycle", "", "J"}});
 
 /// Returns the row of a file in the table, of the JSON of its fit, which may be null.
 Json RowOf(const BatchEntry& entry, const Json& fit) {

@@ -39,7 +39,7 @@ namespace {
 /// that never changes or is beyond any unit that is meant.
 void RequireLoops(const std::vector<RecordFile>& inputs) {
   const RecordFile& first = inputs.front();
-  const report::Units& units = report::UnitsOf(first.is_torsional);
+  const report::Units units = report::UnitsOf(first.is_torsional);
   for (const RecordFile& input : inputs) {
     if (input.is_torsional != first.is_torsional) {
       Refuse("of {} and {} one holds a force, one a torque: fit them apart", first.name,

@@ -52,7 +52,7 @@ inline std::size_t PlaceOf(std::string_view column) {
 }
 
 /// Holds the results of one cycle, or of several fitted together, in the units of loop::LoopFacts
-/// and FitResult; the energy is the mean of these, the other facts are those of the widest.
+/// and FitResult; of several the energy is the mean, the other facts are those of the widest.
 struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
@@ -99,7 +99,8 @@ inline constexpr auto kCycleFlags = std::to_array<CycleFlag>({
 void RequireFit(const loop::RecordView& head, const identification::FitOptions& options);
 
 /// Fits one cycle after the other, each from where the last one ended (Fitter::Continue() at
-/// Depth::kErrors): each has the minimum and the errors that a fit of it alone has.
+/// Depth::kErrors): each has the minimum that a fit of it alone has, to the solver's tolerance, and
+/// the standard errors of its noise.
 class CycleFitter {
  public:
   /// @param options  of each cycle: steady unless another state is given; with the splitting gate

@@ -8,7 +8,8 @@ namespace mindahl::io {
 
 /// Writes a whole file so that a reader finds the old content or the new, never a part: to a
 /// temporary name in the same directory, then by renaming. On failure nothing is left behind and an
-/// existing file is untouched; a signal that ends the program may leave the temporary ".…" file.
+/// existing file is untouched; a signal that ends the program may leave the temporary file,
+/// whose name begins with a dot.
 ///
 /// A new file gets the permissions of the umask, an existing one keeps its own, and a symbolic link
 /// stays a link. What cannot be renamed over (a device, a pipe, anything below /dev or /proc, as

@@ -15,7 +15,8 @@ namespace mindahl::io {
 /// Selects the columns of a file, and how they are read. Each of displacement, force, time and
 /// normal load is a text: "" for the column that is recognised; a header name or a number from 1,
 /// "Fx" or "3"; with its unit, "3 [kN]", or that alone, "[kN]"; or a sum of columns with factors
-/// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's or SI is taken.
+/// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's is taken,
+/// and SI where that has none.
 struct RecordColumns {
   std::string displacement{};
   std::string force{};
@@ -119,8 +120,8 @@ class RecordStream {
   std::shared_ptr<State> state_;
 };
 
-/// Returns the displacements [m] or [rad] to impose, one a row, in order; SI units are kept
-/// exactly.
+/// Returns the displacements [m] or [rad] to impose, one a row, in order; numbers in SI
+/// units are the doubles of the file.
 /// @param column  by default the first, or, where that is another channel by its name, the one of a
 ///   recognised name; unit as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()

@@ -19,7 +19,12 @@ struct Units {
 
 /// Returns the units of a record.
 constexpr Units UnitsOf(bool is_torsional) {
-  return is_torsional ? Units{"N m", "rad", "N m/rad", "N m", "rad"} : Units();
+  if (!is_torsional) return {};
+  return {.force = "N m",
+          .displacement = "rad",
+          .stiffness = "N m/rad",
+          .response = "N m",
+          .excitation = "rad"};
 }
 
 /// Returns the unit that a quantity of a torque has where that of a force has `unit`: N is N m, m
