@@ -35,8 +35,8 @@ inline FitResult FitWithout(std::span<const SampleRange> held_out,
                             std::span<const loop::RecordView> records, FitOptions options,
                             Depth depth = Depth::kEstimate) {
   std::vector<std::vector<bool>>& masks = options.preparation.held_out;
-  masks.resize(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) masks[r].resize(records[r].size());
+  if (!held_out.empty()) masks.resize(records.size());
+  for (std::size_t r = 0; r < masks.size(); ++r) masks[r].resize(records[r].size());
   for (const auto& [record, begin, end] : held_out) {
     for (std::size_t i = begin; i < end; ++i) masks[record][i] = true;
   }

@@ -37,7 +37,9 @@ const RecordFit& FitResult::WidestRecord() const {
 }
 
 double FitResult::EncoderStep() const {
-  return std::ranges::max_element(records, {}, &RecordFit::encoder_step)->encoder_step;
+  double step = 0.0;
+  for (const RecordFit& record : records) step = std::max(step, record.encoder_step);
+  return step;
 }
 
 double FitResult::PeakForce() const {

@@ -179,21 +179,29 @@ bool TellsTheLaw(const FitResult& result) {
                              &ParameterEstimate::is_known);
 }
 
-/// Returns the first strokes of records that begin on their later loop and fit worse than the rest:
-/// their last turn, which is not recorded, may have been elsewhere than the later ones.
+/// Returns the first strokes of records that begin on their later loop, not at the file's zeros,
+/// and fit worse than the rest: the last turn before them may have been elsewhere than the later
+/// ones.
 std::vector<SampleRange> FirstStrokesAside(const ScaledRecords& data, const FitResult& result,
-                                           double larger_rms) {
+                                           const Thresholds& thresholds) {
   std::vector<SampleRange> aside;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    if (record.CountTurns() < 2 || !record.BeginsOnLoop()) continue;
+    const RecordFit& fit = result.records[r];
+    if (record.CountTurns() < 2 || record.BeginsAtZeros(thresholds) || !record.BeginsOnLoop()) {
+      continue;
+    }
+    const auto rms = [&](std::size_t begin, std::size_t end) {  // of samples that count
+      double squares = 0.0;
+      double count = 0.0;
+      for (std::size_t i = begin; i < end; ++i) {
+        squares += fit.counts[i] * fit.residual[i] * fit.residual[i];
+        count += fit.counts[i];
+      }
+      return std::sqrt(squares / std::max(count, 1.0));
+    };
     const std::size_t turn = record.reversals.front();
-    const Eigen::Map<const Eigen::VectorXd> residual(result.records[r].residual.data(),
-                                                     std::ssize(result.records[r].residual));
-    const Eigen::ArrayXd squares = residual.array().square();
-    const auto first = static_cast<Eigen::Index>(turn);
-    const double of_rest = squares.tail(squares.size() - first).mean();
-    if (squares.head(first).mean() > larger_rms * larger_rms * of_rest) {
+    if (rms(0, turn) > thresholds.larger_rms * rms(turn, record.size())) {
       aside.push_back({r, 0, turn});
     }
   }
@@ -234,13 +242,15 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
       result.prefers_other_law() || !options.preparation.held_out.empty()) {
     return result;
   }
-  const std::vector<SampleRange> aside =
-      FirstStrokesAside(data, result, options.thresholds.larger_rms);
+  const std::vector<SampleRange> aside = FirstStrokesAside(data, result, options.thresholds);
   if (aside.empty()) return result;
   FitResult without = FitWithout(aside, records, std::move(options), depth);
-  const bool is_adequate =
-      without.converged && without.adequacy.verdict == AdequacyVerdict::kAdequate;
-  return is_adequate ? without : result;
+  if (!without.converged || without.adequacy.tried == 0 ||
+      without.adequacy.verdict != AdequacyVerdict::kAdequate) {
+    return result;
+  }
+  for (const SampleRange& range : aside) without.records[range.record].first_stroke = range.end;
+  return without;
 }
 
 /// Returns the options of a second fit, with a slip force no larger than the largest force, where

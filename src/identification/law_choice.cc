@@ -30,11 +30,11 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
 }
 
 /// Returns what lies before the first turns of records of unknown initial state: they begin under a
-/// force or on their later loop, or have no whole stroke.
+/// force; or elsewhere than at the file's zeros on their later loop, or without a whole stroke.
 /// @param dahl  fit of Dahl's own law
 std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
-                                     const ScaledRecords& data, const FitResult& fit,
-                                     const FitResult& dahl) {
+                                     const FitOptions& options, const ScaledRecords& data,
+                                     const FitResult& fit, const FitResult& dahl) {
   constexpr double kUnloaded = 0.05;   // of the half range, or of Tc
   constexpr double kDeviations = 4.0;  // of the noise
   const double noise = std::sqrt(WhiteVariance(fit)) / data.response_unit();
@@ -52,8 +52,9 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
          std::abs(records[r].displacement.front() - origin->value) *
                  dahl.law.tangential_stiffness <=
              kUnloaded * dahl.law.slip_force);
-    if (!begins_unloaded || record.reversals.size() < 2 || record.BeginsOnLoop())
-      past.push_back({r, 0, record.reversals.front()});
+    const bool is_excerpt = !record.BeginsAtZeros(options.thresholds) &&
+                            (record.reversals.size() < 2 || record.BeginsOnLoop());
+    if (!begins_unloaded || is_excerpt) past.push_back({r, 0, record.reversals.front()});
   }
   return past;
 }
@@ -125,10 +126,8 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const double step = data.is_forced() ? 0.0 : fit.EncoderStep() / data.length;
   const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
   const bool is_one_curve = fit.initial_state == InitialState::kSteady && is_one_amplitude;
-  const auto starts_inside = [&](const ScaledRecord& record) {  // the range of its strokes
-    const auto [low, high] = std::ranges::minmax(record.excitation());
-    const double start = record.excitation().front();
-    return std::min(start - low, high - start) > options.thresholds.starts_inside * (high - low);
+  const auto starts_inside = [&](const ScaledRecord& record) {
+    return record.StartsInside(options.thresholds.starts_inside);
   };
   if (is_one_curve) {
     if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
@@ -186,7 +185,7 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const FitResult& masing = is_masing ? fit : other;
   const FitResult& dahl = is_masing ? other : fit;
   std::vector<SampleRange> past;
-  if (is_open && is_for_dahl) past = UnknownPast(records, data, fit, dahl);
+  if (is_open && is_for_dahl) past = UnknownPast(records, options, data, fit, dahl);
   bool is_told = true;
   if (!past.empty() && is_one_amplitude) {
     const auto leaves_more = [&](const FitResult& of) {
@@ -201,8 +200,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     delta = *without;
   }
   choice.delta_aicc = delta;
-  if (is_told && !is_undecided(delta))
+  if (is_told && !is_undecided(delta)) {
     choice.preferred = delta > 0 ? fit.model : choice.alternative;
+  }
   return choice;
 }
 

@@ -146,6 +146,8 @@ class Selection {
     return result;
   }
 
+  /// Fits each of the few candidates that promise most, and returns those that can be added, the
+  /// one that gains most first; the gain of a column that follows the force counts twice.
   std::vector<std::string> Likely(std::size_t most) {
     std::vector<TermCandidate*> tried = Score();
     std::erase_if(tried, [&](TermCandidate* candidate) {
@@ -387,8 +389,9 @@ class Selection {
   TermSelection law_;           // fitted at Depth::kEstimate, without terms
   TermSelection base_;          // likewise, with the terms that were added
   bool law_bounds_slip_force_;  // without terms
-  /// Their scores have steps from the law with what was added in their place.
-  std::vector<TermCandidate> alternatives_;  // to the first that was added of a round
+  /// Candidates that gain nearly as much as one that was added; score.law is the difference from
+  /// its law.
+  std::vector<TermCandidate> alternatives_;
 };
 
 }  // namespace

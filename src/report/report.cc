@@ -52,20 +52,19 @@ void CountSamples(Report& report) {
   for (const LeftOut& part : report.left_out) report.samples += part.samples;
   const loop::PreparationOptions& chosen = report.options.preparation;
   const bool is_selected = chosen.load_window || chosen.samples || chosen.cycles;
-  // Of the options: a fit that failed has no parameters.
-  const bool has_lag =
-      report.options.fixed.contains("lag") || std::ranges::count(report.options.terms, "lag") > 0;
-  const char* const why = is_selected ? "selection" : has_lag ? "lag" : "unrecorded turn";
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const RecordFit& fit = report.fit.records[r];
     const io::RecordFile& file = report.records[r];
     report.samples += file.record.size();
+    std::vector<std::size_t> first_stroke;
     std::vector<std::size_t> others;
     for (std::size_t i = 0; i < fit.counts.size(); ++i) {
-      if (fit.counts[i] == 0 && !std::ranges::binary_search(fit.glitches, i)) others.push_back(i);
+      if (fit.counts[i] != 0 || std::ranges::binary_search(fit.glitches, i)) continue;
+      (i < fit.first_stroke ? first_stroke : others).push_back(i);
     }
     LeaveOut(fit.glitches, file, "faults", report.left_out);
-    LeaveOut(others, file, why, report.left_out);
+    LeaveOut(first_stroke, file, "unrecorded turn", report.left_out);
+    LeaveOut(others, file, is_selected ? "selection" : "lag", report.left_out);
     if (file.left_out.count > 0) {
       report.left_out.push_back({file.name, file.left_out.count, 0, 0, "not whole"});
     }

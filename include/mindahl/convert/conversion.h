@@ -36,7 +36,7 @@ struct TargetRow {
   std::string_view title;
   Form form;
   std::span<const ParameterRow> parameters;
-  std::string_view lines;  ///< that it reads, with keys of values in braces
+  std::string_view lines;  ///< lines that it reads, with keys of values in braces
 };
 
 /// Returns all targets, in the order of the documentation.

@@ -55,7 +55,8 @@ enum class Depth {
                ///< parabola of the likelihood, and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
-  kFull,       ///< and a rig in place of another α, and the other law: what the program asks for
+  kFull,       ///< and a rig in place of another α, the other law, and the fit without a first
+               ///< stroke from an unrecorded turn, if all else is described: what the program asks
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
@@ -99,6 +100,8 @@ struct RecordFit : loop::RecordReading {
   ResidualStructure structure;
   /// [N] Fitted (measured if the displacement is fitted), with the file's sign and offsets.
   std::vector<double> fitted_force;
+  /// Samples of a first stroke from a turn that is not recorded, which was left out; else 0.
+  std::size_t first_stroke = 0;
   std::vector<double> residual;  ///< fitted − measured [unit of the response]
 };
 

@@ -135,7 +135,7 @@ struct Thresholds {
   /// Repeated tests of one contact differ by less than a factor of two.
   double other_test = 2.0;
   /// [of Tc] A loop that leaves more of Tc unreached does not slip grossly: a steady one determines
-  /// no asymmetry. What never slips may bear any force between its limits, as may the asymmetry.
+  /// no asymmetry. What never slips may bear any force between its limits, which moves it as much.
   double never_slips = 0.01;
   /// [standard deviations] A prior further from the estimate without it contradicts the records. A
   /// correct prior lies that far once in 370 fits.

@@ -17,7 +17,7 @@ namespace mindahl::identification {
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 
 /// Returns the rms of what the model misses [N or m]: of residuals that look like noise the part
-/// that the causes explain, of others all of them but their white noise.
+/// that the causes explain or that repeats in every stroke, of others all but their white noise.
 double MissedForce(const FitResult& result);
 
 /// Returns the omitted terms that noise alone does not make, the best first, without those that

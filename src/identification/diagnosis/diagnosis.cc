@@ -50,7 +50,7 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
   const bool is_virgin_masing =
       problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
   bool is_told = false;  // by one record
-  bool is_cut = false;   // inside a stroke: its slope is that of there, not of the contact at rest
+  bool is_cut = true;  // each inside a stroke, with the slope of there, not of the contact at rest
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     const std::size_t origin = problem.parameters.PositionOfOrigin(r);
@@ -69,8 +69,8 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
                                  away <= thresholds.starts_unloaded * half;
     is_told =
         is_told || record.CountTurns() >= 2 || IsOneCycle(record, thresholds) || starts_unloaded;
-    is_cut = is_cut || problem.parameters[origin].assumed ||
-             std::min(front - lowest, highest - front) > thresholds.starts_inside * 2 * half;
+    is_cut = is_cut &&
+             (problem.parameters[origin].assumed || record.StartsInside(thresholds.starts_inside));
   }
   if (is_told) return std::nullopt;
   Finding finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
@@ -149,10 +149,13 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
     }
   }
   if (static_cast<double>(places) >= thresholds.fewest_places) return std::nullopt;
-  return Finding{.code = "not_identifiable",
-                 .parameters = {"sigma", "alpha"},
-                 .numbers = {{"places", static_cast<double>(places)}},
-                 .kind = "few_places"};
+  Finding finding{.code = "not_identifiable",
+                  .numbers = {{"places", static_cast<double>(places)}},
+                  .kind = "few_places"};
+  for (const std::size_t p : {kStiffness, kShape}) {  // unless a prior says more
+    if (problem.parameters[p].is_open()) finding.parameters.push_back(problem.parameters.NameOf(p));
+  }
+  return finding.parameters.empty() ? std::nullopt : std::optional(finding);
 }
 
 /// Parameters whose prior lies far from the records' own estimate; where the model does not
@@ -339,8 +342,9 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
   const Parameters& parameters = problem.parameters;
   for (const std::size_t p : parameters.free()) {
     const BoundSide side = SideOf(parameters[p], solution.theta[p]);
-    if (parameters[p].term->positive || p == kShape || !IsSearchLimit(parameters[p], side))
+    if (parameters[p].term->positive || p == kShape || !IsSearchLimit(parameters[p], side)) {
       continue;
+    }
     Finding finding{.code = "search_limit", .parameters = {parameters.NameOf(p)}};
     for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
       if (!parameters[law].fixed) finding.parameters.push_back(parameters.NameOf(law));

@@ -42,7 +42,8 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
 /// Where the measured loop reaches slip, that of Tc becomes the union of the fitted value, the
 /// measured half gap with its margin, and the interval so far as far as that lies between the least
 /// and the largest of half gap, T* and the value, each with the margin: the scatter of the cycles'
-/// half gaps and the force that the model misses. Other intervals are left as they are.
+/// half gaps and the force that the model misses. Closed intervals then count as including what the
+/// model misses, and others are left as they are.
 void CoverDiscrepancy(const Estimates& fitted, FitResult& result);
 
 /// Raises the lower limit of Tc, of an interval that is open above, to the force that the contact

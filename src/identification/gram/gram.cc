@@ -79,8 +79,8 @@ double Gram::IndependentTests() const {
 GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& at) const {
   GramAxes axes;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free_(at, at));
-  constexpr double kLeast =
-      1e-6;  // square of the norm of an axis that is independent of the others
+  // Square of the norm of an axis that is independent of the others.
+  constexpr double kLeast = 1e-6;
   const Eigen::Index count = (pairs.eigenvalues().array() > kLeast).count();  // the last ones
   axes.values = pairs.eigenvalues().tail(count).array();
   axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);

@@ -159,12 +159,16 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const double error = ErrorOfTheta(p);
   SetInterval(estimate, {});
   if (parameter.fixed || !std::isfinite(error)) return;
-  const bool is_inside = SideOf(parameter, theta) == BoundSide::kInside;
+  const BoundSide side = SideOf(parameter, theta);
+  const bool is_inside = side == BoundSide::kInside;
   // At a bound half the normal law lies beyond it.
   const double half = (is_inside ? quantile_ : NormalQuantile(options_.confidence)) * error;
+  constexpr double kBeyond = std::numeric_limits<double>::infinity();
   const double slope = parameter.term->positive ? estimate.value : std::abs(parameter.scale);
   if (is_inside) estimate.standard_error = slope * error;
-  SetInterval(estimate, EndsWithinBounds(parameter, theta - half, theta + half));
+  SetInterval(estimate,
+              EndsWithinBounds(parameter, side == BoundSide::kLower ? -kBeyond : theta - half,
+                               side == BoundSide::kUpper ? kBeyond : theta + half));
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {

@@ -79,10 +79,11 @@ class Estimates {
   /// Returns the number of samples on which a parameter rests: (Σh²)²/Σh⁴ of the influences h of
   /// the samples on its θ (Kish 1965), n where they have the same.
   [[nodiscard]] double SamplesOf(std::size_t parameter) const;
-  /// Half width of an interval in standard errors; its square is the F beyond which a held
-  /// parameter is outside the interval.
+  /// Returns the half width of an interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
+  /// Returns the F beyond which a held parameter is outside its interval.
   [[nodiscard]] double critical() const { return quantile_ * quantile_; }
+  /// Returns the half width of the parabola's interval of θ.
   [[nodiscard]] double HalfWidth(std::size_t parameter) const {
     return quantile_ * ErrorOfTheta(parameter);
   }

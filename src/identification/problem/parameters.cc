@@ -96,12 +96,7 @@ void Hold(Parameter& parameter, double value) {
 /// must be said. It is the file's zero where the record begins at both zeros of its file; else the
 /// first sample, where the force is then the offset's.
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
-  const TermUnits& units = data.units;
-  const double displacement =
-      data.displacement.front() * units.length + units.displacement_reference;
-  const double force = data.force.front() * units.force + units.force_reference;
-  if (std::abs(displacement) <= options.thresholds.starts_unloaded * units.length &&
-      std::abs(force) <= options.thresholds.starts_without_force * units.force) {
+  if (data.BeginsAtZeros(options.thresholds)) {
     Hold(parameter, 0.0);
   } else if (!parameter.term->is_linear) {
     parameter.theta = data.excitation().front();

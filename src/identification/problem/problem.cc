@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -357,15 +356,15 @@ Eigen::VectorXd Predict(const Problem& problem, std::span<const double> theta) {
 void Response::Differentiate(std::span<const double> theta, std::span<const std::size_t> parameters,
                              Eigen::VectorXd& t, Eigen::MatrixXd& columns) {
   // Each derivative of t is computed once, for however many parameters.
-  std::map<TermId, Eigen::VectorXd> wanted;
+  ResponseColumns gradient;
   for (const std::size_t p : parameters) {
     const ScaledRecord& any = problem_.data->records.front();
     for (const auto& [id, factor] : ChainRuleOf(problem_, problem_.parameters[p], any)) {
-      if (id != kItself) wanted[id].resize(t.size());
+      if (id == kItself) continue;
+      derivatives_[id].resize(t.size());
+      gradient[id] = SpanOf(derivatives_[id]);
     }
   }
-  ResponseColumns gradient;
-  for (auto& [id, derivative] : wanted) gradient[id] = SpanOf(derivative);
   Evaluate(theta, SpanOf(t), gradient);
   gradient[kItself] = SpanOf(t);
   columns.setZero(t.size(), std::ssize(parameters));

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -95,6 +96,7 @@ class Response {
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   models::NormalizedLoadedResponse loaded_response_;
+  std::map<TermId, Eigen::VectorXd> derivatives_;  // of t; a search resizes none
 };
 
 /// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.

@@ -233,7 +233,21 @@ std::size_t ScaledRecord::CountTurns() const {
       std::ranges::count_if(reversals, [&](std::size_t turn) { return turn + 1 < end; }));
 }
 
+bool ScaledRecord::StartsInside(double share) const {
+  const auto [lowest, highest] = std::ranges::minmax(excitation());
+  const double start = excitation().front();
+  return std::min(start - lowest, highest - start) > share * (highest - lowest);
+}
+
+bool ScaledRecord::BeginsAtZeros(const Thresholds& thresholds) const {
+  return std::abs(displacement.front() * units.length + units.displacement_reference) <=
+             thresholds.starts_unloaded * units.length &&
+         std::abs(force.front() * units.force + units.force_reference) <=
+             thresholds.starts_without_force * units.force;
+}
+
 bool ScaledRecord::BeginsOnLoop() const {
+  if (reversals.size() < 2) return false;
   constexpr double kBeside = 0.1;        // of half the range of the displacement
   constexpr double kBesideForce = 0.25;  // of half the range of the force
   const auto [lowest, highest] = std::ranges::minmax(displacement);

@@ -46,8 +46,13 @@ struct ScaledRecord {
   /// Returns the number of turns before the last sample that counts: later ones make no history.
   [[nodiscard]] std::size_t CountTurns() const;
   [[nodiscard]] bool Turns() const { return CountTurns() > 0; }
-  /// True if a record that turns begins on its later loop, as an excerpt of a steady loop does,
-  /// also one from where its force is zero: the next stroke runs through the opposite place.
+  /// True if the record begins further from the ends of its strokes than a share of their range.
+  [[nodiscard]] bool StartsInside(double share) const;
+  /// True if the record begins at both zeros of its file: there the contact is unloaded.
+  [[nodiscard]] bool BeginsAtZeros(const Thresholds& thresholds) const;
+  /// True if a record that turns twice or more begins on its later loop, as an excerpt of a steady
+  /// loop does, also one from where its force is zero: the next stroke runs near the opposite
+  /// place.
   [[nodiscard]] bool BeginsOnLoop() const;
 
   [[nodiscard]] std::span<const double> excitation() const {
@@ -70,7 +75,8 @@ inline std::span<double> SpanOf(Eigen::Ref<Eigen::VectorXd> column) {
   return {column.data(), static_cast<std::size_t>(column.size())};
 }
 
-/// Rms residual of a noise-free record, by rounding alone [of the force unit].
+/// Rms residual of a noise-free record, by rounding alone [of the force unit]: smaller differences
+/// between fits mean nothing.
 inline constexpr double kRoundingRms = 1e-13;
 
 /// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.

@@ -229,7 +229,7 @@ constexpr auto kTermsOfDisplacement = [] {
   auto terms = kTerms;
   for (Term& term : terms) {
     const bool is_offset = term.presence == Presence::kOffsets;
-    term.is_linear = term.is_linear != is_offset;  // the other channel's
+    if (is_offset) term.is_linear = !term.is_linear;  // that of the other channel is linear
     if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
     } else if (term.id > TermId::kSlipForce && term.id != TermId::kLoadExponent && !is_offset) {

@@ -13,7 +13,8 @@ namespace mindahl::identification {
 /// Adds the weighted residuals of a problem, model − measured over a unit, of every sample, with
 /// their analytic Jacobian, as one residual block. Its parameter blocks, each a θ, are those of the
 /// parameters that the fit reports, but for the reference position of a steady contact, which has
-/// no effect. With a loss, or null, each residual r is sgn(r)·√ρ(r²), half of whose square it is.
+/// no effect. With a loss, which may be null, each residual r is replaced by sgn(r)·√ρ(r²), of
+/// which half the square is the loss.
 /// @param problem   must outlive `to`
 /// @param unit      by which residuals are divided [units of the data]
 /// @param block_of  returns the block of the parameter at a position
