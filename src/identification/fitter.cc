@@ -179,18 +179,15 @@ bool TellsTheLaw(const FitResult& result) {
                              &ParameterEstimate::is_known);
 }
 
-/// Returns the first strokes of records that begin on their later loop, not at the file's zeros,
-/// and fit worse than the rest: the last turn before them may have been elsewhere than the later
-/// ones.
+/// Returns the first strokes of records that begin on their later loop and fit worse than the rest:
+/// the last turn before them may have been elsewhere than the later ones.
 std::vector<SampleRange> FirstStrokesAside(const ScaledRecords& data, const FitResult& result,
                                            const Thresholds& thresholds) {
   std::vector<SampleRange> aside;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
     const RecordFit& fit = result.records[r];
-    if (record.CountTurns() < 2 || record.BeginsAtZeros(thresholds) || !record.BeginsOnLoop()) {
-      continue;
-    }
+    if (record.CountTurns() < 2 || !record.BeginsOnLoop()) continue;
     const auto rms = [&](std::size_t begin, std::size_t end) {  // of samples that count
       double squares = 0.0;
       double count = 0.0;

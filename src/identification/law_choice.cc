@@ -30,7 +30,8 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
 }
 
 /// Returns what lies before the first turns of records of unknown initial state: they begin under a
-/// force; or elsewhere than at the file's zeros on their later loop, or without a whole stroke.
+/// force or on their later loop, or have no whole stroke and begin elsewhere than at the file's
+/// zeros.
 /// @param dahl  fit of Dahl's own law
 std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const ScaledRecords& data,
@@ -52,8 +53,8 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
          std::abs(records[r].displacement.front() - origin->value) *
                  dahl.law.tangential_stiffness <=
              kUnloaded * dahl.law.slip_force);
-    const bool is_excerpt = !record.BeginsAtZeros(options.thresholds) &&
-                            (record.reversals.size() < 2 || record.BeginsOnLoop());
+    const bool is_excerpt = record.reversals.size() < 2 ? !record.BeginsAtZeros(options.thresholds)
+                                                        : record.BeginsOnLoop();
     if (!begins_unloaded || is_excerpt) past.push_back({r, 0, record.reversals.front()});
   }
   return past;

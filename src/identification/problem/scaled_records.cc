@@ -252,15 +252,18 @@ bool ScaledRecord::BeginsOnLoop() const {
   constexpr double kBesideForce = 0.25;  // of half the range of the force
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const auto [least, greatest] = std::ranges::minmax(force);
+  const double x = displacement.front();
+  const double f = force.front();
+  bool is_on_loop = false;
   for (std::size_t i = reversals[0]; i <= reversals[1]; ++i) {
-    const double off = displacement.front() + displacement[i] - lowest - highest;
-    const double off_force = force.front() + force[i] - least - greatest;
-    if (std::abs(off) < kBeside * (highest - lowest) / 2 &&
-        std::abs(off_force) < kBesideForce * (greatest - least) / 2) {
-      return true;
-    }
+    const auto is_near = [&](double place, double force_there) {
+      return std::abs(displacement[i] - place) < kBeside * (highest - lowest) / 2 &&
+             std::abs(force[i] - force_there) < kBesideForce * (greatest - least) / 2;
+    };
+    if (is_near(x, f)) return false;  // between both sides, as where the contact is unloaded
+    is_on_loop = is_on_loop || is_near(lowest + highest - x, least + greatest - f);
   }
-  return false;
+  return is_on_loop;
 }
 
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {

@@ -52,7 +52,7 @@ struct ScaledRecord {
   [[nodiscard]] bool BeginsAtZeros(const Thresholds& thresholds) const;
   /// True if a record that turns twice or more begins on its later loop, as an excerpt of a steady
   /// loop does, also one from where its force is zero: the next stroke runs near the opposite
-  /// place.
+  /// place, and not near this one, as in a loop so narrow that an unloaded contact lies within.
   [[nodiscard]] bool BeginsOnLoop() const;
 
   [[nodiscard]] std::span<const double> excitation() const {
