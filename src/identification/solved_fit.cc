@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,7 +68,9 @@ bool GiveEnergy(const FitOptions& options, const loop::PreparedRecords& prepared
 SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   // A fit that is given a start looks for others on all samples, where it does.
-  const ScaledRecords thin = options.start.empty() ? Thinned(attempt.data) : attempt.data;
+  std::optional<ScaledRecords> thinned;
+  if (options.start.empty()) thinned = Thinned(attempt.data);
+  const ScaledRecords& thin = thinned ? *thinned : attempt.data;
   const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, thin, options);
     Descend(candidate, options);
