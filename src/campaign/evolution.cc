@@ -22,7 +22,8 @@ constexpr double kSmallestStep = 0.02;   // [-] of the value before it
 constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
 constexpr double kOfScatter = 4;         // [standard deviations] enough whatever the size
 constexpr double kSettled = 0.05;        // [-] of the whole change
-// A variance of residuals above so many times the neighbours', and this of all, is no scatter.
+// Residuals are periodic, not scatter, if their variance exceeds both multiples: of the variance of
+// neighbours, and of the variance about one line through all values.
 constexpr double kOfNeighbours = 10;
 constexpr double kOfAll = 0.25;
 constexpr std::size_t kLeastBins = 4;      // of a segment: two beyond a line
@@ -232,7 +233,8 @@ class Divisions {
   std::array<std::vector<Best>, kMostSegments> best_;
 };
 
-/// Returns the bins, each within the range of its neighbours, of an end that of the next two.
+/// Returns the bins with each value clamped to the range of its two neighbours, and the first and
+/// the last one to the range of the next two.
 std::vector<Course::Bin> WithoutOutliers(Bins bins) {
   std::vector<Course::Bin> kept(bins.begin(), bins.end());
   for (std::size_t i = 0; i < bins.size(); ++i) {

@@ -72,7 +72,8 @@ std::pair<CLI::App&, Options&> AddCommand(CLI::App& program, Console& console,
 /// @param names  with their dashes, in the order of the help
 void ShowFirst(CLI::App& command, std::vector<std::string> names);
 
-/// Adds options to one group of a command's help. A name without dashes is that of other words.
+/// Adds options to one group of a command's help. A name without dashes is that of
+/// positional arguments.
 class OptionGroup {
  public:
   OptionGroup(CLI::App& command, std::string name) : command_(command), name_(std::move(name)) {}

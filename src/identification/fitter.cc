@@ -284,7 +284,7 @@ FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitO
               {.lower = value, .upper = value + result.adequacy.misfit});
     }
   }
-  // What the model misses and rivals widened intervals beyond bounds that are given.
+  // The discrepancy and other models may have extended an interval beyond the user's bounds.
   for (const auto& [name, bounds] : options.bounds) {
     const auto estimate = std::ranges::find(result.parameters, name, &ParameterEstimate::name);
     if (estimate == result.parameters.end()) continue;

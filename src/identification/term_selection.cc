@@ -88,7 +88,8 @@ std::vector<TermCandidate> CandidatesOf(std::span<const RecordView> records,
 }
 
 /// True if the search of a term stopped at a bound of the program's own: no parameter is known.
-/// Where a sliding contact was unloaded is no such term; others end where the theory does.
+/// Bounds of the theory do not count, nor does the displacement at which a sliding contact was
+/// unloaded.
 bool StopsAtLimit(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
     const Term& term = *TermOfParameter(estimate.name);

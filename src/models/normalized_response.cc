@@ -210,7 +210,7 @@ bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLa
                                       std::span<double> d, const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
   const bool with_gradient = !IsEmpty(gradient);
-  // Where a virgin contact begins, or the middle of a steady loop.
+  // Forces count from the origin of a virgin contact, or from the centre of a steady loop.
   const models::Branch& first = path.branches.front();
   const bool at_extreme = first.start == BranchStart::kSteadyExtreme;
   const double zero = at_extreme ? first.origin + first.direction * first.amplitude : first.origin;

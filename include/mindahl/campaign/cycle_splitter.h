@@ -21,7 +21,8 @@ struct Cycle {
 };
 
 /// Cuts samples that arrive piece by piece into cycles, from the first turning point to every
-/// second one after it; what lies outside is none. Memory: the samples since the cycle's first.
+/// second one after it; samples outside belong to no cycle. Memory: the samples since the cycle's
+/// first.
 class CycleSplitter {
  public:
   /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it

@@ -50,7 +50,7 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
   const bool is_virgin_masing =
       problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
   bool is_told = false;  // by one record
-  bool is_cut = true;  // each inside a stroke, with the slope of there, not of the contact at rest
+  bool is_cut = true;    // every record begins inside a stroke: none shows the slope at rest
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     const std::size_t origin = problem.parameters.PositionOfOrigin(r);

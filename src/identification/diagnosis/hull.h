@@ -39,11 +39,11 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
                          std::span<ParameterEstimate> estimates);
 
 /// Makes intervals cover the model discrepancy. That of σ includes the stiffness after reversals.
-/// Where the measured loop reaches slip, that of Tc becomes the union of the fitted value, the
-/// measured half gap with its margin, and the interval so far as far as that lies between the least
-/// and the largest of half gap, T* and the value, each with the margin: the scatter of the cycles'
-/// half gaps and the force that the model misses. Closed intervals then count as including what the
-/// model misses, and others are left as they are.
+/// If the measured loop reaches slip, the interval of Tc is replaced by the union of three parts:
+/// the fitted value; the measured half gap with a margin on both sides; and the previous interval,
+/// clamped to the range of half gap, T* and value with the same margin. The margin combines the
+/// scatter of the cycles' half gaps with the force that the model misses. Closed intervals are
+/// marked as including the discrepancy; open ones do not change.
 void CoverDiscrepancy(const Estimates& fitted, FitResult& result);
 
 /// Raises the lower limit of Tc, of an interval that is open above, to the force that the contact

@@ -209,7 +209,7 @@ Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
   const Lags covariance = EstimateAutocovariances(records, residual, highest);
   Autocorrelation best;
   if (!(covariance[0] > 0)) return best;
-  // By Levinson and Durbin: each order from the one before.
+  // The Levinson–Durbin recursion computes the coefficients of each order from the previous ones.
   std::vector<double> coefficients;
   double variance = covariance[0];
   double best_criterion = 0.0;  // of order 0, by how much others are better

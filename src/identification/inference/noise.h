@@ -96,7 +96,8 @@ struct Evidence {
   [[nodiscard]] double Aicc(double sum_of_squares, std::size_t parameters) const;
 };
 
-/// Returns that of a solution's residuals, of samples no fewer than determine its free parameters.
+/// Returns the evidence of a solution's residuals, with at least one effective sample more than
+/// free parameters.
 Evidence EvidenceOf(const Problem& problem, std::span<const double> theta);
 
 /// Returns the mean squares of each record's residuals, weighted and not all zero, over that of

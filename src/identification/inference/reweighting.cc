@@ -183,7 +183,7 @@ class Reweighting {
       for (Eigen::Index i = 0; i < residual.size(); ++i) {
         if (counts_[i] > 0) standardised.push_back(residual[i] * std::sqrt(precision[i]));
       }
-      // By the median of their magnitudes, which outliers do not move.
+      // The median of the magnitudes estimates the standard deviation despite outliers.
       return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
                                               standardised.begin(), standardised.end(), 0.0) -
              1;

@@ -216,7 +216,8 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
   if (moves_ >= problem_.parameters.size()) return;
   const std::span<double> by_amount = columns[problem_.parameters[moves_].term->id];
   if (by_amount.empty()) return;
-  // Of a longer lag or a wider gap: without either the response has a kink.
+  // The difference is one-sided, towards a longer lag or a wider gap: at zero the response has a
+  // kink.
   constexpr double kStep = 1e-7;  // by which the difference is rounded to 1e-9 of the slip force
   Motion here = std::exchange(motions_[r], {});
   std::vector<double> beside(theta.begin(), theta.end());

@@ -68,9 +68,9 @@ void KeepBetter(Solver& solver, Look& best, Look look) {
   const Parameter& exponent = parameters[kLoadExponent];
   std::vector<double>& theta = look.theta;
   const bool is_forced = problem.data->is_forced();
-  // Elements in parallel make it α.
+  // Elements in parallel have the load exponent α.
   if (!exponent.fixed) theta[kLoadExponent] = exponent.Clamp(std::min(theta[kShape], 1.0));
-  // The ratios of a contact of Tc = 1, or where that is held of its own.
+  // The ratios are those of a contact of Tc = 1, or of the Tc that is held.
   const double log_slip_force = slip_force.fixed ? slip_force.theta : 0.0;
   theta[kSlipForce] = log_slip_force;
   double log_stiffness = std::log(look.reach);
