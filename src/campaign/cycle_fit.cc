@@ -9,8 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/refuse.h"
 #include "core/text.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/report/units.h"
@@ -59,16 +59,6 @@ void FillFacts(const Cycle& cycle, const FitResult& result, CycleFit& fit) {
   if (rectangle > 0) fit["energy_friction_coefficient"] = facts.energy_per_cycle / rectangle;
 }
 
-/// Takes over a parameter with its standard error, and whether the cycle determines it.
-void FillParameter(const FitResult& result, const std::string& name, CycleFit& fit) {
-  const identification::ParameterEstimate* estimate = result.Find(name);
-  if (estimate == nullptr) return;
-  if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
-  fit[name] = estimate->value;
-  const double error = result.ErrorOf(*estimate);
-  if (estimate->standard_error && std::isfinite(error)) fit[name + "_error"] = error;
-}
-
 // A torque about the contact has no contact radius, the last of them.
 static_assert(kCycleNumbers.back().name == "contact_radius");
 
@@ -79,7 +69,7 @@ std::size_t CountOfNumbers(bool is_torsional) {
 template <typename Value>
 Value CellValue(std::string_view cell) {
   if (const auto value = NumberIn<Value>(cell)) return *value;
-  throw InputError(fmt::format("'{}' is not a number", cell));
+  Refuse("'{}' is not a number", cell);
 }
 
 /// Interpolates glitches in the first and last two samples of a cycle, where FindAndInterpolate()
@@ -149,8 +139,13 @@ CycleFit CycleFitter::Fit(const Cycle& read) {
   if (result->FindFinding("rows_missing") != nullptr) fit.flags.emplace_back("rows_missing");
   FillFacts(cycle, *result, fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
-  for (const char* name : {"sigma", "alpha", "slip_force", "force_offset"}) {
-    FillParameter(*result, name, fit);
+  for (const std::string name : {"sigma", "alpha", "slip_force", "force_offset"}) {
+    const identification::ParameterEstimate* estimate = result->Find(name);
+    if (estimate == nullptr) continue;
+    if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
+    fit[name] = estimate->value;
+    const double error = result->ErrorOf(*estimate);
+    if (estimate->standard_error && std::isfinite(error)) fit[name + "_error"] = error;
   }
   fit["rms"] = result->rms;
   if (compliance_ && !fit.HasFlag("sigma_open")) {
@@ -185,20 +180,16 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
 
 CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
-  const std::size_t numbers = CountOfNumbers(is_torsional);
-  // cycle, first_line, samples, cycles; the numbers; accumulated_energy, flags.
-  constexpr std::size_t kCounts = 4;
-  const std::size_t columns = kCounts + numbers + 2;
-  if (cells.size() != columns) {
-    throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
-  }
-  CycleFit fit{.number = CellValue<std::size_t>(cells[0]),
-               .first_line = CellValue<std::size_t>(cells[1]),
-               .samples = CellValue<std::size_t>(cells[2]),
-               .cycles = CellValue<std::size_t>(cells[3])};
-  for (std::size_t k = 0; k < numbers; ++k) {
-    const std::string_view cell = cells[kCounts + k];
-    if (!cell.empty()) fit.numbers.at(k) = CellValue<double>(cell);
+  CycleFit fit;
+  const std::array counts = {&fit.number, &fit.first_line, &fit.samples, &fit.cycles};
+  const auto numbers = std::span(fit.numbers).first(CountOfNumbers(is_torsional));
+  const std::size_t columns = counts.size() + numbers.size() + 2;  // accumulated_energy and flags
+  if (cells.size() != columns) Refuse("has {} cells of {}", cells.size(), columns);
+  auto cell = cells.begin();
+  for (std::size_t* const count : counts) *count = CellValue<std::size_t>(*cell++);
+  for (std::optional<double>& number : numbers) {
+    if (!cell->empty()) number = CellValue<double>(*cell);
+    ++cell;
   }
   for (const std::string_view flag : PartsOf(cells.back(), ' ')) {
     if (!flag.empty()) fit.flags.emplace_back(flag);

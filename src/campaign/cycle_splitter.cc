@@ -1,12 +1,8 @@
 #include "mindahl/campaign/cycle_splitter.h"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <optional>
-#include <utility>
 
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::campaign {
@@ -34,46 +30,43 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
                         std::vector<Cycle>& cycles) {
   Append(samples, lines, kept_);
   for (const double displacement : samples.displacement) {
-    const std::optional<std::size_t> turn = finder_.Add(displacement);
-    if (!turn) continue;
-    if (turns_ == 0) begin_ = *turn - dropped_;
-    if (turns_ % 2 == 0) end_ = *turn - dropped_;
-    if (turns_++ == 2 * together_) TakeOff(cycles);
+    if (const auto turn = finder_.Add(displacement)) turns_.push_back(*turn);
+    if (turns_.size() > 2 * together_) TakeOff(cycles);
   }
-  const auto end = static_cast<std::ptrdiff_t>(begin_);
-  const auto erase_before = [end](auto& values) {
-    if (!values.empty()) values.erase(values.begin(), values.begin() + end);
+  const auto unused = static_cast<std::ptrdiff_t>(Begin());
+  const auto drop = [unused](auto& values) {
+    if (!values.empty()) values.erase(values.begin(), values.begin() + unused);
   };
-  for (const auto column : loop::kRecordColumns) erase_before(kept_.*column);
-  erase_before(kept_.lines);
-  end_ -= begin_;
-  dropped_ += std::exchange(begin_, 0);
+  dropped_ += Begin();
+  for (const auto column : loop::kRecordColumns) drop(kept_.*column);
+  drop(kept_.lines);
   if (kept_.size() > kMostSamples) {
-    throw InvalidArgument(
-        fmt::format("more than {} samples without a whole cycle, from line {} on: the displacement "
-                    "does not turn by more than {} m",
-                    kMostSamples, kept_.lines.front(), gate_));
+    Refuse<InvalidArgument>(
+        "more than {} samples without a whole cycle, from line {} on: the displacement does not "
+        "turn by more than {} m",
+        kMostSamples, kept_.lines.front(), gate_);
   }
 }
 
 void CycleSplitter::TakeOff(std::vector<Cycle>& cycles) {
-  const std::size_t count = (turns_ - 1) / 2;
+  const std::size_t count = (turns_.size() - 1) / 2;
+  const auto last = turns_.begin() + static_cast<std::ptrdiff_t>(2 * count);
+  const std::size_t size = *last - turns_.front() + 1;
   Cycle& cycle = cycles.emplace_back(Cycle{
-      .number = cycles_ + 1, .cycles = count, .first_line = kept_.lines[begin_], .record = {}});
+      .number = cycles_ + 1, .cycles = count, .first_line = kept_.lines[Begin()], .record = {}});
   for (const auto column : loop::kRecordColumns) {
     const std::span<const double> values = kept_.*column;
     if (values.empty()) continue;
-    const auto own = values.subspan(begin_, end_ + 1 - begin_);
+    const auto own = values.subspan(Begin(), size);
     (cycle.record.*column).assign(own.begin(), own.end());
   }
   cycles_ += count;
-  begin_ = end_;
-  turns_ = 1;
+  turns_.erase(turns_.begin(), last);
 }
 
 std::size_t CycleSplitter::Restart(std::vector<Cycle>& cycles) {
-  if (turns_ >= 3) TakeOff(cycles);
-  const std::size_t left = kept_.size() - begin_;
+  if (turns_.size() >= 3) TakeOff(cycles);
+  const std::size_t left = kept_.size() - Begin();
   const std::size_t cycles_so_far = cycles_;
   *this = CycleSplitter(gate_, together_);
   cycles_ = cycles_so_far;

@@ -37,6 +37,10 @@ using Bins = std::span<const Course::Bin>;
 /// A least-squares line through the values in bins, which takes one more at a time (West 1979):
 ///   y = level + slope (x − x₀)
 struct Line {
+  explicit Line(Bins bins) {
+    for (const Course::Bin& bin : bins) Add(bin);
+  }
+
   double x0 = 0.0;
   double level = 0.0;
   double count = 0.0;
@@ -64,12 +68,6 @@ struct Line {
     return 1 / count + (slope() == 0 ? 0.0 : (bin.cycle - x0) * (bin.cycle - x0) / spread);
   }
 };
-
-Line LineThrough(Bins bins) {
-  Line line;
-  for (const Course::Bin& bin : bins) line.Add(bin);
-  return line;
-}
 
 /// Returns the squared second differences of neighbours, over their variance at one value's of 1. A
 /// trend leaves these alone, and their median disregards steps.
@@ -137,7 +135,7 @@ bool IsLarge(double change, double smallest, const Noise& noise) {
 /// A part of a time history that a line describes.
 struct Segment {
   Bins bins;
-  Line line = LineThrough(bins);
+  Line line{bins};
   std::size_t begin = bins.front().first_cycle;
 
   /// Returns the line's value within what values there were.
@@ -175,63 +173,57 @@ Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t long
   return {std::max(VarianceOf(squares), exact), static_cast<double>(squares.size()) / 2};
 }
 
-/// Finds the segments of bins whose lines have the least sum of squares, for each number of them.
-class Divisions {
- public:
-  explicit Divisions(Bins bins) : bins_(bins) {
-    best_.fill(std::vector<Best>(bins.size() + 1));
-    for (std::size_t begin = 0; begin + kLeastBins <= bins.size(); ++begin) {
-      Line line = LineThrough(bins.subspan(begin, kLeastBins - 1));
-      for (std::size_t end = begin + kLeastBins; end <= bins.size(); ++end) {
-        line.Add(bins[end - 1]);
-        if (begin == 0) best_[0][end].squares = line.squares();
-        for (std::size_t k = 1; k < kMostSegments && begin > 0; ++k) {
-          const double squares = best_[k - 1][begin - 1].squares + line.squares();
-          if (squares < best_[k][end].squares) best_[k][end] = {squares, begin};
-        }
-      }
-    }
-  }
+/// The segments whose lines have the least sum of squares for their number.
+struct Division {
+  double squares;
+  std::vector<Segment> segments = {};
+};
 
-  /// Returns the number of segments that the F test calls for.
-  [[nodiscard]] std::size_t CountFor(const Noise& noise) const {
-    constexpr double kMore = 4;  // a level, a slope, a place and the bin there
-    const double chance = kChance / static_cast<double>(bins_.size());
-    const double price = kMore * noise.variance * QuantileOfF(chance, kMore, noise.degrees);
-    const auto cost = [&](std::size_t count) {
-      return best_[count - 1].back().squares + static_cast<double>(count - 1) * price;
-    };
-    std::size_t best = 1;
-    for (std::size_t count = 2; count <= kMostSegments; ++count) {
-      if (cost(count) < cost(best)) best = count;
-    }
-    return best;
-  }
-
-  /// True if there are bins for so many segments, and squares that are numbers.
-  [[nodiscard]] bool Have(std::size_t count) const {
-    return std::isfinite(best_[count - 1].back().squares);
-  }
-
-  [[nodiscard]] std::vector<Segment> Segments(std::size_t count) const {
-    std::vector<Segment> segments;
-    for (std::size_t end = bins_.size(); count-- > 0;
-         end = segments.front().bins.data() - bins_.data() - 1) {
-      const std::size_t begin = best_[count][end].begin;
-      segments.insert(segments.begin(), {bins_.subspan(begin, end - begin)});
-    }
-    return segments;
-  }
-
- private:
+/// Returns the divisions of bins into one segment, two and more, as many as there are bins for and
+/// squares that are numbers.
+std::vector<Division> DivisionsOf(Bins bins) {
   struct Best {
     double squares = std::numeric_limits<double>::infinity();
     std::size_t begin = 0;  // of the last segment
   };
-  Bins bins_;
-  // best_[k][n] divides the first n bins into k + 1 segments.
-  std::array<std::vector<Best>, kMostSegments> best_;
-};
+  // best[k][n] divides the first n bins into k + 1 segments.
+  std::vector best(kMostSegments, std::vector<Best>(bins.size() + 1));
+  for (std::size_t begin = 0; begin + kLeastBins <= bins.size(); ++begin) {
+    Line line(bins.subspan(begin, kLeastBins - 1));
+    for (std::size_t end = begin + kLeastBins; end <= bins.size(); ++end) {
+      line.Add(bins[end - 1]);
+      if (begin == 0) best[0][end].squares = line.squares();
+      for (std::size_t k = 1; k < kMostSegments && begin > 0; ++k) {
+        const double squares = best[k - 1][begin - 1].squares + line.squares();
+        if (squares < best[k][end].squares) best[k][end] = {squares, begin};
+      }
+    }
+  }
+  std::vector<Division> divisions;
+  for (std::size_t count = 1; count <= kMostSegments; ++count) {
+    std::size_t end = bins.size();
+    Division division{best[count - 1][end].squares};
+    if (!std::isfinite(division.squares)) break;
+    for (std::size_t left = count; left > 0; --left) {
+      const std::size_t begin = best[left - 1][end].begin;
+      division.segments.insert(division.segments.begin(), {bins.subspan(begin, end - begin)});
+      end = begin - 1;  // the bin before a segment is in none
+    }
+    divisions.push_back(std::move(division));
+  }
+  return divisions;
+}
+
+/// Returns the number of segments that the F test calls for.
+std::size_t CountFor(const Noise& noise, std::span<const Division> divisions, std::size_t bins) {
+  constexpr double kMore = 4;  // a level, a slope, a place and the bin there
+  const double chance = kChance / static_cast<double>(bins);
+  const double price = kMore * noise.variance * QuantileOfF(chance, kMore, noise.degrees);
+  const auto cost = [price](const Division& division) {
+    return division.squares + static_cast<double>(division.segments.size() - 1) * price;
+  };
+  return std::ranges::min_element(divisions, {}, cost)->segments.size();
+}
 
 /// Returns the bins with each value clamped to the range of its two neighbours, and the first and
 /// the last one to the range of the next two.
@@ -362,22 +354,24 @@ CourseDescription Describe(const Course& course) {
   if (rows < 2 * kLeastBins) return description;
   const std::vector<Course::Bin> weighted = Weighted(course.bins());
   const std::vector<Course::Bin> bins = WithoutOutliers(weighted);
-  const Divisions divisions(bins);
-  const double neighbours = NoiseWithin(divisions.Segments(1), weighted, 1).variance;
+  const std::vector<Division> divisions = DivisionsOf(bins);
+  if (divisions.empty()) return description;  // squares are no doubles
+  const double neighbours = NoiseWithin(divisions.front().segments, weighted, 1).variance;
   Noise noise;
   std::size_t count = 0;
   // Steps in more than half of the blocks count as scatter, unless the segments divide these.
-  for (std::size_t trial = 1; trial <= kMostSegments && divisions.Have(trial); ++trial) {
-    Noise within = NoiseWithin(divisions.Segments(trial), weighted);
+  for (const Division& trial : divisions) {
+    Noise within = NoiseWithin(trial.segments, weighted);
     within.variance = std::max(within.variance, neighbours);
-    const std::size_t called_for = divisions.CountFor(within);
-    if (std::isnormal(within.variance) && called_for > count && called_for >= trial) {
+    const std::size_t called_for = CountFor(within, divisions, bins.size());
+    if (std::isnormal(within.variance) && called_for > count &&
+        called_for >= trial.segments.size()) {
       noise = within;
       count = called_for;
     }
   }
-  if (count == 0) return description;  // all are 0, or their squares are no doubles
-  std::vector<Segment> segments = divisions.Segments(count);
+  if (count == 0) return description;  // all are 0
+  std::vector<Segment> segments = divisions[count - 1].segments;
   double squares = 0.0;
   std::vector<Change>& changes = description.changes;
   const Segment* before = nullptr;
@@ -407,7 +401,7 @@ CourseDescription Describe(const Course& course) {
   }
   description.varies = rows >= kFewestToTest &&
                        squares > kOfNeighbours * neighbours * static_cast<double>(rows) &&
-                       squares > kOfAll * LineThrough(bins).square;
+                       squares > kOfAll * Line(bins).square;
   if (description.varies) {
     changes.clear();
     const auto [least, greatest] = std::ranges::minmax(bins, {}, &Course::Bin::value);
@@ -424,7 +418,7 @@ CourseDescription Describe(const Course& course) {
     description.to = without_scatter(course.last(), segments.back().last(),
                                      weighted.back().count / course.bins().back().count);
   } else if (rows >= kFewestToTest) {
-    description.from = description.to = LineThrough(weighted).level;
+    description.from = description.to = Line(weighted).level;
   }
   return description;
 }

@@ -1,5 +1,6 @@
 #include "mindahl/campaign/tracker.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -32,9 +33,7 @@ void Tracker::Take(std::vector<Cycle>& cycles) {
   constexpr std::size_t kMostPoints = 400;
   for (Cycle& cycle : cycles) {
     // The first cycle from 1, 10, 100, … on is kept.
-    std::size_t next = 1;
-    for (std::size_t k = 0; k < log_.size(); ++k) next *= 10;
-    if (cycle.number >= next) {
+    if (static_cast<double>(cycle.number) >= std::pow(10.0, log_.size())) {
       const std::size_t stride = cycle.record.size() / kMostPoints + 1;
       Cycle& kept = log_.emplace_back();
       kept.number = cycle.number;

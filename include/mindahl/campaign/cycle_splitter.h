@@ -49,17 +49,17 @@ class CycleSplitter {
   static constexpr std::size_t kMostSamples = 20'000'000;
 
  private:
+  /// Returns where the piece begins in the samples that are kept.
+  [[nodiscard]] std::size_t Begin() const { return turns_.empty() ? 0 : turns_.front() - dropped_; }
   /// Appends the whole cycles of the piece.
   void TakeOff(std::vector<Cycle>& cycles);
 
   double gate_;
   std::size_t together_;
   loop::ReversalFinder finder_;
-  io::Samples kept_;         // from the cycle's first sample on
-  std::size_t dropped_ = 0;  // samples before them
-  std::size_t begin_ = 0;    // of the piece, in those
-  std::size_t end_ = 0;      // of its last whole cycle, in those
-  std::size_t turns_ = 0;    // turning points since the piece's first, with it
+  io::Samples kept_;                // from the cycle's first sample on
+  std::size_t dropped_ = 0;         // samples before them
+  std::vector<std::size_t> turns_;  // samples of the turning points from the piece's first on
   std::size_t cycles_ = 0;
 };
 
