@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <system_error>
@@ -83,6 +84,9 @@ std::string_view CellCursor::Take() {
 }
 
 Cell ReadCell(std::string_view text, char decimal_mark) {
+  // Most cells are plain numbers, not "nan".
+  const auto number = decimal_mark == '.' ? NumberIn<double>(text) : std::nullopt;
+  if (number && std::isfinite(*number)) return {.kind = Cell::Kind::kNumber, .value = *number};
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string plain(text.substr(text.front() == '+' ? 1 : 0));
   const auto with_point = [](char sign) { return sign == ',' ? '.' : sign == '.' ? ',' : sign; };

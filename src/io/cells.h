@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -41,21 +40,6 @@ class CellCursor {
 
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
-
-  /// Takes the next cell if it is a number with a decimal point and no sign of plus; returns false
-  /// and takes nothing where it is none.
-  bool TakeNumber(double& value) {
-    const char* const begin = SkipBlanks(at_);
-    const char* digits = begin;
-    if (digits != end_ && *digits == '-') ++digits;
-    if (digits != end_ && *digits == '.') ++digits;
-    if (digits == end_ || *digits < '0' || *digits > '9') return false;  // nor "nan"
-    const auto [stop, error] = std::from_chars(begin, end_, value);
-    const char* const after = delimiter_ == kBlanks ? stop : SkipBlanks(stop);
-    if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return false;
-    GoBehind(after);
-    return true;
-  }
 
  private:
   [[nodiscard]] bool IsDelimiter(char character) const {
