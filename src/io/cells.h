@@ -27,11 +27,8 @@ inline constexpr char kBlanks = ' ';
 /// empty cell.
 class CellCursor {
  public:
-  CellCursor(std::string_view row, char delimiter) : delimiter_(delimiter) {
-    if (delimiter == kBlanks) row = Trimmed(row);
-    at_ = row.data();
-    end_ = at_ + row.size();
-  }
+  CellCursor(std::string_view row, char delimiter)
+      : rest_(delimiter == kBlanks ? Trimmed(row) : row), delimiter_(delimiter) {}
 
   /// True if there is a further cell.
   [[nodiscard]] bool has_next() const { return has_next_; }
@@ -42,22 +39,8 @@ class CellCursor {
   std::string_view Take();
 
  private:
-  [[nodiscard]] bool IsDelimiter(char character) const {
-    return character == delimiter_ || (delimiter_ == kBlanks && character == '\t');
-  }
-  [[nodiscard]] const char* SkipBlanks(const char* at) const {
-    while (at != end_ && (*at == ' ' || *at == '\r' || (*at == '\t' && delimiter_ != '\t'))) ++at;
-    return at;
-  }
-  /// @param delimiter  at the end of a cell, or of the row
-  void GoBehind(const char* delimiter) {
-    has_next_ = delimiter != end_;
-    at_ = !has_next_ ? end_ : delimiter_ == kBlanks ? SkipBlanks(delimiter) : delimiter + 1;
-  }
-
+  std::string_view rest_;
   char delimiter_;
-  const char* at_ = nullptr;
-  const char* end_ = nullptr;
   bool has_next_ = true;
   bool is_open_ = false;
   std::string unescaped_;
