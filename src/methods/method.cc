@@ -1,7 +1,5 @@
 #include "mindahl/methods/method.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
@@ -10,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/methods/iwan.h"
 #include "mindahl/models/response.h"
@@ -239,10 +237,10 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   if (resolution.steps == 0) ThrowInvalid("steps [-]", 0.0, "must be >= 1");
   RequirePositive("tolerance [-]", resolution.tolerance);
   if (method.masing_only && model.memory != models::Memory::kReturnPoint) {
-    throw InvalidArgument(fmt::format(
+    Refuse<InvalidArgument>(
         "method {} cannot compute model {}: its elements remember every reversal, the model does "
         "not",
-        method.name, model.name));
+        method.name, model.name);
   }
   return [evaluate = method.prepare(model, law, resolution)](const Drive& drive,
                                                              std::span<double> force) {

@@ -1,13 +1,11 @@
 #include "mindahl/tradeoff/work_precision.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 #include "mindahl/loop/facts.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
@@ -79,8 +77,8 @@ methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& 
   const models::FrictionModel* model = models::FindFrictionModel(approximation.model);
   const Method* method = methods::FindMethod(approximation.method);
   if (model == nullptr || method == nullptr) {
-    throw InvalidArgument(fmt::format("there is no model '{}' or no method '{}'",
-                                      approximation.model, approximation.method));
+    Refuse<InvalidArgument>("there is no model '{}' or no method '{}'", approximation.model,
+                            approximation.method);
   }
   BranchLaw of_model = law;
   of_model.shape_exponent = model->shape_exponent.value_or(law.shape_exponent);

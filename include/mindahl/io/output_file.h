@@ -7,16 +7,12 @@
 namespace mindahl::io {
 
 /// Writes a whole file so that a reader finds the old content or the new, never a part: to a
-/// temporary name in the same directory, then by renaming. On failure nothing is left behind and an
-/// existing file is untouched; a signal that ends the program may leave the temporary file,
-/// whose name begins with a dot.
+/// temporary name in the same directory, which is renamed when all of it is on the disk. On failure
+/// nothing is left behind; a signal may leave the temporary file, whose name begins with a dot.
 ///
 /// A new file gets the permissions of the umask, an existing one keeps its own, and a symbolic link
-/// stays a link. What cannot be renamed over (a device, a pipe, anything below /dev or /proc, as
-/// /dev/stdout is) is written straight to.
+/// stays a link. A device, a pipe and what is below /dev or /proc is written to directly.
 /// @throws InputError "cannot write '<path>': <reason>"
-/// Safe against a crash of the program and of the machine: file and directory are on the disk when
-/// it returns, which takes some milliseconds.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
 /// A file that grows by whole blocks while a run goes on. What was appended stays, whatever ends
@@ -33,8 +29,7 @@ class AppendedFile {
   /// @throws InputError likewise, as where the disk is full
   void Append(std::string_view block);
 
-  /// Closes the file once all of it is on the disk. What was appended before survives the end of
-  /// the program, and of the machine only if the system has written it, in half a minute as a rule.
+  /// Closes the file once all of it is on the disk; until then it survives the end of the program.
   /// @throws InputError likewise
   void Finish();
 

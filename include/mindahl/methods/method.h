@@ -28,11 +28,9 @@ struct Resolution {
 
 /// Computes the force [N] along a drive; reversals and branches are found within. The spans must
 /// have one length.
-///
-/// Returns what this costs [ns] by what was done, samples read and written aside: the same in every
-/// run, whatever machine runs it and however busy it is. What an operation takes is a regression of
-/// the times of bench/methods_bench on the machine that docs/tradeoff.md names; another machine
-/// takes about in proportion.
+/// @returns what this costs [ns], samples read and written aside: the operations that were made
+///   times what each takes by a regression of bench/methods_bench (docs/tradeoff.md), and so the
+///   same in every run and on every machine
 using Evaluator = std::function<double(const Drive& drive, std::span<double> force)>;
 
 /// A way to evaluate a friction model along a drive. The reversals and the loops that close are the
