@@ -69,6 +69,19 @@ struct Line {
   }
 };
 
+/// Returns bins of as many neighbours each, the last perhaps of fewer.
+std::vector<Course::Bin> InBlocks(Bins bins, std::size_t length) {
+  std::vector<Course::Bin> blocks;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (i % length == 0) {
+      blocks.push_back(bins[i]);
+    } else {
+      blocks.back().Merge(bins[i]);
+    }
+  }
+  return blocks;
+}
+
 /// Returns the squared second differences of neighbours, over their variance at one value's of 1. A
 /// trend leaves these alone, and their median disregards steps.
 std::vector<double> SquaredBends(Bins bins) {
@@ -158,16 +171,8 @@ Noise NoiseWithin(std::span<const Segment> segments, Bins bins, std::size_t long
   for (const Segment& segment : segments) {
     const Bins own =
         bins.subspan(segment.bins.data() - segments.front().bins.data(), segment.bins.size());
-    std::vector<Course::Bin> blocks;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (i % length == 0) {
-        blocks.push_back(own[i]);
-      } else {
-        blocks.back().Merge(own[i]);
-      }
-      exact = std::max(exact, FloorOf(own[i]));
-    }
-    std::ranges::copy(SquaredBends(blocks), std::back_inserter(squares));
+    for (const Course::Bin& bin : own) exact = std::max(exact, FloorOf(bin));
+    std::ranges::copy(SquaredBends(InBlocks(own, length)), std::back_inserter(squares));
   }
   if (squares.empty()) return {std::numeric_limits<double>::infinity(), 1.0};
   return {std::max(VarianceOf(squares), exact), static_cast<double>(squares.size()) / 2};
@@ -338,11 +343,7 @@ void Course::Add(std::size_t cycle, double value, std::size_t cycles, double err
   last_ = value;
   if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
   if (bins_.size() == kMostBins) {
-    for (std::size_t i = 0; i < kMostBins / 2; ++i) {
-      bins_[i] = bins_[2 * i];
-      bins_[i].Merge(bins_[2 * i + 1]);
-    }
-    bins_.resize(kMostBins / 2);
+    bins_ = InBlocks(bins_, 2);
     width_ *= 2;
   }
   bins_.push_back(one);

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
-#include <iomanip>
 #include <iterator>
-#include <sstream>
 
 #include "mindahl/core/error.h"
 
@@ -14,10 +13,7 @@ namespace mindahl::io {
 std::string CsvCell(const std::string& text) {
   const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
                      !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
-  if (plain) return text;
-  std::ostringstream quoted;
-  quoted << std::quoted(text, '"', '"');
-  return quoted.str();
+  return plain ? text : '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
 std::string CsvText(const std::vector<CsvColumn>& columns) {
