@@ -40,6 +40,7 @@ struct TrackedTest {
   std::size_t broken_rows = 0;     // rows skipped
   loop::ReversalGate gate = {};
   std::size_t fits = 0;
+  bool is_established = false;                                 // a fit converged
   std::map<std::string, std::size_t, std::less<>> flags = {};  // how many fits have each
   std::size_t cycles_without = 0;         // cycles that have no fit or are no loop
   std::size_t last_with = 0;              // last cycle that has one and is one
@@ -54,6 +55,7 @@ struct TrackedTest {
     const bool is_loop = !fit.HasFlag("not_closed") && !fit.HasFlag("rows_missing");
     if (is_loop) energy += static_cast<double>(fit.cycles) * fit["energy"].value_or(0.0);
     ++fits;
+    is_established = is_established || !fit.HasFlag("not_converged");
     for (const std::string& flag : fit.flags) ++flags[flag];
     if (fit.HasFlag("not_converged") || fit.HasFlag("no_loop")) {
       cycles_without += fit.cycles;
@@ -70,11 +72,6 @@ struct TrackedTest {
                         cycles_without, cycles);
     const bool ends_without = last_with > 0 && last_with < cycles;
     return ends_without ? text + fmt::format(", the last with both is {}", last_with) : text;
-  }
-  /// False where no fit converged.
-  [[nodiscard]] bool established() const {
-    const auto failed = flags.find("not_converged");
-    return failed == flags.end() || failed->second < fits;
   }
 };
 
@@ -168,15 +165,13 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
         "Dashed lines are steps beyond chance, and where the quantity settled.", panel);
   }
   const bool is_steady = changes.empty() && test.cycles_without == 0;
+  const char* const word = is_steady ? "steady" : changes.empty() ? "incomplete" : "changed";
+  const std::string verdict =
+      test.is_established ? report::VerdictHtml(is_steady ? "good" : "poor", word, test.Headline())
+                          : report::VerdictHtml("bad", "failed", "no fit of a cycle converged");
   return report::PageHtml(
       fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
-      (!test.established() ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
-                           : report::VerdictHtml(is_steady ? "good" : "poor",
-                                                 is_steady         ? "steady"
-                                                 : changes.empty() ? "incomplete"
-                                                                   : "changed",
-                                                 test.Headline()) +
-                                 report::ListHtml(changes)) +
+      verdict + report::ListHtml(changes) +
           report::SectionHtml(
               "Over the test",
               report::ListHtml(Facts(test)) +
@@ -186,8 +181,8 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
               "What to mind",
               report::TableHtml("cycles with a flag", FlagRows(test)) +
                   report::ParagraphHtml("Errors assume that the model is adequate: check some "
-                                        "cycles with mindahl fit.")) +
-          report::ProvenanceHtml(command));
+                                        "cycles with mindahl fit.")),
+      command);
 }
 
 // --- the run
@@ -345,7 +340,6 @@ class TrackRun {
 };
 
 void RunTrack(const TrackCommandOptions& options, Console& console) {
-  RequireDistinctFiles(options.fit.files);
   Validate(options.fit.contact);
   // A table is the work of hours; a device loses nothing.
   std::error_code ignored;
@@ -354,7 +348,7 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
     Refuse("--output: {} exists: add --resume to go on with it, or --overwrite", options.output);
   }
   const TrackedTest test = TrackRun(options).Track();
-  console.exit_status = test.established() ? kDone : kNotEstablished;
+  console.exit_status = test.is_established ? kDone : kNotEstablished;
   const Json quantities = QuantityRows(test);
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, ToPage(test, quantities, console.command_line));

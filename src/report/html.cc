@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
-
 #include "io/drawing.h"
 #include "mindahl/core/version.h"
 #include "report/style.h"
@@ -14,7 +12,9 @@ using io::HtmlText;
 
 constexpr int kWidth = 560;  // [px] of a figure
 
-std::string PageHtml(std::string_view title, std::string_view body) {
+std::string PageHtml(std::string_view title, std::string_view body, std::string_view command) {
+  const std::string again =
+      command.empty() ? "" : fmt::format("<pre><code>{}</code></pre>\n", HtmlText(command));
   return fmt::format(R"(<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -31,11 +31,14 @@ std::string PageHtml(std::string_view title, std::string_view body) {
 <body>
 <header><h1>{}</h1></header>
 <main>
-{}</main>
+{}<h2>How to reproduce this page</h2>
+{}<p>mindahl {}</p>
+</main>
 </body>
 </html>
 )",
-                     HtmlText(title), io::kShapes, kStyle, HtmlText(title), body);
+                     HtmlText(title), io::kShapes, kStyle, HtmlText(title), body, again,
+                     HtmlText(Version()));
 }
 
 std::string SectionHtml(std::string_view heading, const std::string& body) {
@@ -103,13 +106,6 @@ std::string FigureHtml(std::string_view id, std::string_view title, std::string_
 
 std::string SideBySide(std::string_view parts) {
   return parts.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", parts);
-}
-
-std::string ProvenanceHtml(std::string_view command) {
-  return SectionHtml(
-      "How to reproduce this page",
-      (command.empty() ? "" : fmt::format("<pre><code>{}</code></pre>\n", HtmlText(command))) +
-          ParagraphHtml(fmt::format("mindahl {}", Version())));
 }
 
 }  // namespace mindahl::report

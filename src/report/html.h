@@ -1,11 +1,6 @@
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "mindahl/io/plot.h"
-#include "mindahl/report/report.h"
 #include "report/statements.h"
 
 // Parts of the pages, as HTML 5. Whatever is called a text, caption or sentence is escaped; with
@@ -14,7 +9,8 @@ namespace mindahl::report {
 
 /// Returns a page, self-contained: a policy for the browser forbids loading; there is no script.
 /// @param body  the parts below, in their order
-std::string PageHtml(std::string_view title, std::string_view body);
+/// @param command  that makes the page again; "" where there was none
+std::string PageHtml(std::string_view title, std::string_view body, std::string_view command);
 
 /// Returns parts under a heading; "" without any.
 std::string SectionHtml(std::string_view heading, const std::string& body);
@@ -44,8 +40,5 @@ std::string FigureHtml(std::string_view id, std::string_view title, std::string_
                        int height, std::string_view elements);
 /// Returns figures, or tables, side by side where there is room; "" without any.
 std::string SideBySide(std::string_view parts);
-
-/// Returns the command, "" where there was none, and the version that make the result again.
-std::string ProvenanceHtml(std::string_view command);
 
 }  // namespace mindahl::report

@@ -1,14 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "io/drawing.h"
-#include "mindahl/report/report.h"
 #include "report/html.h"
 #include "report/json.h"
 #include "report/statements.h"
@@ -150,14 +145,13 @@ std::string ToPage(const Report& report, std::string_view command) {
   const std::string word(VerdictWord(report));
   const std::string title = fmt::format("{}: {}", NameOf(report.files()), word);
   if (report.failed()) {
-    return PageHtml(title,
-                    VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(command));
+    return PageHtml(title, VerdictHtml("bad", word, report.fit.solver.message), command);
   }
   const io::Plot figure = ToPlot(report);
   return PageHtml(
       title,
       fmt::format(
-          "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}{}",
+          "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}",
           VerdictHtml(JudgementOf(word), word, MisfitStatement(report)),
           FigureHtml("loop", "Measured and fitted loop", "Below it, what the fit leaves over.",
                      figure.panels[0]),
@@ -169,8 +163,8 @@ std::string ToPage(const Report& report, std::string_view command) {
                                     TableHtml(fmt::format("models compared, rms in {}",
                                                           report.units.response),
                                               ComparedModels(report))),
-          SectionHtml("Details, in SI units", LinesHtml(DetailLines(report))),
-          ProvenanceHtml(command)));
+          SectionHtml("Details, in SI units", LinesHtml(DetailLines(report)))),
+      command);
 }
 
 }  // namespace mindahl::report

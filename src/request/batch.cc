@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <boost/math/statistics/univariate_statistics.hpp>
-#include <cmath>
 #include <future>
 #include <new>
 #include <set>
@@ -143,8 +141,8 @@ std::string IndexPage(std::span<const BatchEntry> entries, std::string_view titl
           report::SectionHtml(
               "If these are repeats",
               report::TableHtml("over the fitted files in which the quantity is known", repeats) +
-                  (note.empty() ? "" : report::ParagraphHtml(note))) +
-          report::ProvenanceHtml(command));
+                  (note.empty() ? "" : report::ParagraphHtml(note))),
+      command);
 }
 
 }  // namespace
