@@ -22,7 +22,6 @@ struct BatchCommandOptions {
 
 void RunBatch(const BatchCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
-  RequireDistinctFiles(request.files);
   Validate(request.contact);  // before a directory is made
   MakeFitOptions(request);
   const std::filesystem::path directory = options.report_directory;

@@ -2,30 +2,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "cli/app.h"
 #include "core/refuse.h"
 #include "core/text.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/models/response.h"
-#include "mindahl/report/report.h"
-#include "mindahl/request/contact_request.h"
 #include "mindahl/request/fit_request.h"
 #include "report/json.h"
 
@@ -42,12 +31,13 @@ using request::Strictness;
 
 // --- adding commands and options
 
-/// Refuses outputs of a command that could not be written, as AddCommand() says.
-void RequireOutputs(const CLI::App& command);
+/// Refuses files of a command as AddCommand() says.
+void RequireFiles(const CLI::App& command);
 
 /// Adds a command to the program. Before running, it refuses outputs that are not writable, that
-/// name one file twice, or that are also inputs. An option whose value is called PATH or DIR writes
-/// there, "-" to standard output where its help says so; one called FILE is read.
+/// name one file twice, or that are also inputs, and `files` that are given twice, by one name or
+/// two. An option whose value is called PATH or DIR writes there, "-" to standard output where its
+/// help says so; one called FILE is read.
 /// @param examples  lines of its help to copy, which tests/cli/help_text.py runs; one that
 ///                  continues the last begins with blanks
 /// @returns the command, and the options that it runs with, which live as long
@@ -62,7 +52,7 @@ std::pair<CLI::App&, Options&> AddCommand(CLI::App& program, Console& console,
       fmt::format("Examples:\n  {}\n\n{}", fmt::join(examples, "\n  "), program.get_footer()));
   command->set_help_all_flag("--help-all", "Print all options and exit");
   command->callback([command, options, run, &console] {
-    RequireOutputs(*command);
+    RequireFiles(*command);
     run(*options, console);
   });
   return {*command, *options};
@@ -217,9 +207,6 @@ void Say(std::string_view what, const std::vector<std::string>& sentences, Conso
 
 /// Writes an answer as JSON where that is asked for, and as text unless the JSON goes there.
 void WriteAnswer(Console& console, std::string_view json, std::string_view text);
-
-/// Refuses a file that is given twice, by one name or two, since its samples would count twice.
-void RequireDistinctFiles(std::span<const std::string> files);
 
 /// Returns the command line as a shell takes it, words in single quotes where they need them.
 std::string CommandLine(int argc, const char* const* argv);

@@ -14,7 +14,6 @@ struct FitCommandOptions {
 
 void RunFit(const FitCommandOptions& options, Console& console) {
   const FitRequest& request = options.request;
-  RequireDistinctFiles(request.files);
   const report::Report report = request::FitRecords(request, request::ReadRecords(request));
   const bool failed = report.failed();  // then there is no curve to draw, no residual to list
   const std::string fault = WhyNotEstablished(report.fit, options.strict);

@@ -45,9 +45,19 @@ void RequireWritable(const std::string& option, const std::string& path) {
   }
 }
 
+void RequireDistinct(const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!IsSameFile(files[i], files[k])) continue;
+      Refuse("'{}' and '{}' are one file, whose samples would count twice: give it once", files[k],
+             files[i]);
+    }
+  }
+}
+
 }  // namespace
 
-void RequireOutputs(const CLI::App& command) {
+void RequireFiles(const CLI::App& command) {
   std::vector<std::string> inputs;  // a configuration the last
   for (const CLI::App* app : {&command, command.get_parent()}) {
     for (const CLI::Option* each : app->get_options()) {
@@ -78,16 +88,8 @@ void RequireOutputs(const CLI::App& command) {
     }
     outputs.push_back(path);
   }
-}
-
-void RequireDistinctFiles(std::span<const std::string> files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (!IsSameFile(files[i], files[k])) continue;
-      Refuse("'{}' and '{}' are one file, whose samples would count twice: give it once", files[k],
-             files[i]);
-    }
-  }
+  const CLI::Option* const files = command.get_option_no_throw("files");
+  if (files != nullptr) RequireDistinct(files->results());
 }
 
 std::string CommandLine(int argc, const char* const* argv) {
