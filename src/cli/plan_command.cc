@@ -146,11 +146,11 @@ Plan MakePlan(const PlanOptions& options) {
   }
   const ExpectedFit& fewest = *std::ranges::min_element(plan.loops, {}, factor_of);
   const double factor = factor_of(fewest);
-  const bool any = std::isfinite(factor);
-  const double cycles = std::max(1.0, std::ceil(factor * protocol.cycles));
-  plan.reached = {{"least_amplitude", NumberOrNull(least)},
-                  {"fewest_cycles", any ? Json(cycles) : Json()},
-                  {"amplitude_of_fewest_cycles", any ? Json(fewest.protocol.amplitude) : Json()}};
+  plan.reached = {
+      {"least_amplitude", NumberOrNull(least)},
+      {"fewest_cycles", NumberOrNull(std::max(1.0, std::ceil(factor * protocol.cycles)))},
+      {"amplitude_of_fewest_cycles",
+       std::isfinite(factor) ? Json(fewest.protocol.amplitude) : Json()}};
   return plan;
 }
 
@@ -160,16 +160,6 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, std::string_view parameter
   if (!estimate->standard_error) return std::nullopt;
   const double error = *estimate->standard_error / (estimate->unit == "-" ? 1.0 : estimate->value);
   return error < 1 ? std::optional(error) : std::nullopt;
-}
-
-Json ErrorRows(const Plan& plan) {
-  return report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
-    Json row = {{"X [m]", fit.protocol.amplitude}, {"X/slip", fit.protocol.amplitude / plan.slip}};
-    for (const char* parameter : report::kLawParameters) {
-      row[parameter] = NumberOrNull(ErrorOf(fit, parameter));
-    }
-    return row;
-  });
 }
 
 std::string ToText(const PlanOptions& options, const Plan& plan) {
@@ -184,11 +174,18 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
       expected.force_noise, expected.displacement_noise, options.protocol.cycles,
       options.protocol.samples_per_cycle);
   for (const std::string& note : plan.notes) text += "note: " + note + '\n';
+  const Json errors = report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
+    Json row = {{"X [m]", fit.protocol.amplitude}, {"X/slip", fit.protocol.amplitude / plan.slip}};
+    for (const char* parameter : report::kLawParameters) {
+      row[parameter] = NumberOrNull(ErrorOf(fit, parameter));
+    }
+    return row;
+  });
   text += fmt::format(
       "\nstandard errors, of sigma and slip_force over the value\n{}"
       "  -: larger than the value. Slip begins at {:.4g} m. A fit often leaves slip_force open\n"
       "  where its error is above 0.07, alpha above 0.05.\n",
-      report::TableText(ErrorRows(plan), kDigits), plan.slip);
+      report::TableText(errors, kDigits), plan.slip);
   if (options.want.empty()) return text;
   return text + fmt::format("\nwanted: {} (amplitudes in m)\n{}", fmt::join(options.want, ", "),
                             report::TableText(Json::array({plan.reached}), kDigits));

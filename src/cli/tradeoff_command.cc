@@ -33,13 +33,6 @@ constexpr std::array kScenes = {
     Scene{"growing sine", 1.5, {.waveform = Waveform::kGrowingSine, .cycles = 10}},
 };
 
-/// The contact of Peyret et al. (2017) §3.
-BranchLaw PaperContact() {
-  return contact::MapMindlinToDahl({.contact_radius = 0.0027,
-                                    .tangential_compliance = 4.42e-11,
-                                    .slip_force = contact::GrossSlipForce(0.3, 100)});
-}
-
 /// Returns what was measured along an excitation, for text, CSV and JSON.
 Json Measure(const std::string& name, const methods::Drive& drive, const BranchLaw& law,
              double tolerance) {
@@ -117,7 +110,12 @@ io::Plot ToPlot(const Json& excitations) {
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  const BranchLaw law = IsAnythingGiven(options.law) ? ResolveLaw(options.law) : PaperContact();
+  const BranchLaw law =
+      IsAnythingGiven(options.law)
+          ? ResolveLaw(options.law)
+          : contact::MapMindlinToDahl({.contact_radius = 0.0027,
+                                       .tangential_compliance = 4.42e-11,
+                                       .slip_force = contact::GrossSlipForce(0.3, 100)});
   const Json excitations = MeasureAll(options, law);
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(excitations), options.plot);
