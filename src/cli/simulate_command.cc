@@ -1,11 +1,9 @@
-#include <cmath>
 #include <numeric>
 
 #include "cli/command.h"
 #include "core/draws.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/methods/method.h"
-#include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/simplified_law.h"

@@ -2,10 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/algorithm/string/replace.hpp>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "core/text.h"

@@ -1,11 +1,9 @@
 #include "mindahl/report/contact.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/probability.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "report/statements.h"
 
 namespace mindahl::report {

@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <optional>
-#include <string>
 
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"

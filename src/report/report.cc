@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "core/text.h"
 #include "mindahl/core/error.h"

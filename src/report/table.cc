@@ -2,12 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <ranges>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "core/text.h"
 #include "mindahl/io/csv_table.h"

@@ -1,9 +1,6 @@
 #include "mindahl/request/contact_request.h"
 
-#include <cmath>
-
 #include "core/refuse.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
 
 namespace mindahl::request {
 

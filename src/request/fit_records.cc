@@ -1,13 +1,8 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <tuple>
-#include <utility>
 
 #include "core/refuse.h"
 #include "loop/statistics.h"

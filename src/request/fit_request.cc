@@ -1,7 +1,6 @@
 #include "mindahl/request/fit_request.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "core/refuse.h"
 #include "mindahl/identification/terms.h"
