@@ -214,11 +214,11 @@ class TrackRun {
 
  private:
   void BeginFits(const loop::RecordView& head, const io::RecordFile& layout) {
-    const contact::KnownContact& known = options_.fit.contact.known;
     campaign::TrackOptions options = options_.track;
     options.fit = MakeCycleFitOptions(options_.fit);
-    if (!test_.is_torsional) options.compliance = contact::TangentialCompliance(known);
-    if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
+    if (!test_.is_torsional) {
+      options.compliance = contact::TangentialCompliance(options_.fit.contact.known);
+    }
     test_.gate = campaign::ChooseGate(head, options.fit);
     test_.columns = report::ColumnsText(layout, *options.fit.preparation.force_sense);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);

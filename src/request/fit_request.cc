@@ -16,26 +16,25 @@ namespace {
 void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   for (const std::string_view name : group.terms) {
     const std::string term(name);
-    if (fit.fixed.contains(term)) continue;
-    if (std::ranges::find(fit.terms, term) == fit.terms.end()) fit.terms.push_back(term);
+    if (fit.fixed.contains(term) || std::ranges::count(fit.terms, term) > 0) continue;
+    fit.terms.push_back(term);
   }
 }
 
 /// Returns the group that has a term; nullptr where there is none.
 const identification::TermGroup* GroupOf(const Term& term) {
-  const auto groups = identification::TermGroups();
-  const auto group = std::ranges::find_if(groups, [&](const identification::TermGroup& of) {
-    return std::ranges::find(of.terms, term.name) != of.terms.end();
-  });
-  return group == groups.end() ? nullptr : &*group;
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    if (std::ranges::count(group.terms, term.name) > 0) return &group;
+  }
+  return nullptr;
 }
 
 /// A start, a bound or a prior of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
   if (term == nullptr) return;  // the fit knows all names
-  const bool is_added = GroupOf(*term) == nullptr || term->of_column ||
-                        std::ranges::find(fit.terms, term->name) != fit.terms.end();
+  const bool is_added =
+      GroupOf(*term) == nullptr || term->of_column || std::ranges::count(fit.terms, term->name) > 0;
   const bool is_prescribed = name == "alpha" && fit.model->shape_exponent;
   if (is_added && !is_prescribed && !fit.fixed.contains(name)) return;
   Refuse("{}: {} is not fitted, so this has no effect: leave it out, or add --terms NAME", option,
@@ -89,7 +88,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
         {!request.fit.covariates.empty(), "--covariate"},
         {!fit.covariates.empty(), "--terms of a column"},
         {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
-        {std::ranges::find(fit.terms, "asymmetry") != fit.terms.end(), "--terms asymmetry"}}) {
+        {std::ranges::count(fit.terms, "asymmetry") > 0, "--terms asymmetry"}}) {
     if (!is_given) continue;
     Refuse("{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
            option);
