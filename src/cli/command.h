@@ -26,7 +26,7 @@ using report::Json;
 using report::NumberOrNull;
 using request::ContactOptions;
 using request::FitRequest;
-using LawOptions = request::LawRequest;
+using request::LawRequest;
 using request::Strictness;
 
 // --- adding commands and options
@@ -181,7 +181,7 @@ contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_v
 /// --friction where it is no result, each with a standard uncertainty.
 void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_friction = false);
 
-void AddLawParameters(const OptionGroup& group, LawOptions& law);
+void AddLawParameters(const OptionGroup& group, LawRequest& law);
 
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, but at most three elastic
 /// limits, 3Tc/σ, which a law of α > 2/3 passes before it slips.

@@ -15,7 +15,7 @@ namespace {
 struct ConvertOptions {
   std::string fit;  // file of `mindahl fit --json`, or a record: law and amplitude, unless given
   io::RecordColumns columns;  // of the record
-  LawOptions law;
+  LawRequest law;
   std::optional<double> amplitude;  // X [m] of the contact's steady loop
   std::string from;                 // "masing", "dahl" or "": that of the fit, else masing
   std::string to;
@@ -61,7 +61,7 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
     // The force of a drag, which no target has, is in both.
     if (drag && *value && name != std::string_view("alpha")) **value *= 1 - *drag;
   }
-  const LawOptions& law = request.law;
+  const LawRequest& law = request.law;
   if (request.amplitude || !law.sigma || !law.slip_force) return;
   take(request.amplitude, "/measured/amplitude");
   std::optional<double> rig;

@@ -198,7 +198,7 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, bool has_fric
   add("--friction", options.known.friction_coefficient, "friction coefficient mu [-]", "-", "MU");
 }
 
-void AddLawParameters(const OptionGroup& group, LawOptions& law) {
+void AddLawParameters(const OptionGroup& group, LawRequest& law) {
   group.AddQuantity("--sigma", law.sigma, "tangential stiffness sigma [N/m]", "N/M", "N/m");
   group.Add("--alpha", law.alpha, "shape exponent [-], default 1/3 where the model leaves it free",
             "ALPHA");

@@ -15,7 +15,7 @@ using identification::WantedPrecision;
 namespace {
 
 struct PlanOptions {
-  LawOptions law;
+  LawRequest law;
   std::string record;
   io::RecordColumns columns;
   std::optional<double> rig_stiffness;

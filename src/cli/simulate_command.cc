@@ -19,7 +19,7 @@ namespace {
 
 struct SimulateOptions {
   std::string model = "mindlin";
-  LawOptions law;
+  LawRequest law;
   models::ExcitationOptions excitation{.cycles = 1.0};
   std::optional<double> lambda;
   std::optional<double> amplitude;

@@ -13,7 +13,7 @@ using tradeoff::WorkPrecision;
 namespace {
 
 struct TradeoffOptions {
-  LawOptions law;    // default: the contact of Peyret et al. (2017) §3
+  LawRequest law;    // default: the contact of Peyret et al. (2017) §3
   std::string path;  // a file with a displacement, in place of the scenes
   std::string column;
   std::string csv;
