@@ -251,20 +251,17 @@ class Writer {
     const RecordFit& widest = fit_.WidestRecord();
     const loop::LoopFacts& facts = widest.facts;
     const Units& units = report_.units;
-    std::vector<std::string> parts;
+    const std::string amplitude = "±" + Quantity(facts.amplitude, units.displacement, 4);
+    std::vector<std::string> parts = {amplitude, "±" + Quantity(facts.peak_force, units.force, 4),
+                                      "no closed cycle"};
     if (facts.closed) {
-      if (facts.half_gap) {
-        const std::optional<double>& error = facts.half_gap_standard_deviation;
-        parts.push_back("half gap " + QuantityWithError(*facts.half_gap, error, units.force));
-      }
-      parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
-      parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
-      parts.push_back(fmt::format("{} closed cycle{}", facts.steady_cycles,
-                                  facts.steady_cycles == 1 ? "" : "s"));
-      if (loop::Slides(facts)) parts.emplace_back("it slides");
-    } else {
-      parts = {"±" + Quantity(facts.amplitude, units.displacement, 4),
-               "±" + Quantity(facts.peak_force, units.force, 4), "no closed cycle"};
+      const std::optional<double>& error = facts.half_gap_standard_deviation;
+      parts = {facts.half_gap ? "half gap " + QuantityWithError(*facts.half_gap, error, units.force)
+                              : "",
+               Quantity(facts.energy_per_cycle, "J", 4) + " a cycle", amplitude,
+               fmt::format("{} closed cycle{}", facts.steady_cycles,
+                           facts.steady_cycles == 1 ? "" : "s"),
+               loop::Slides(facts) ? "it slides" : ""};
     }
     if (fit_.is_load_series() && widest.normal_load) {
       parts.push_back("at N = " + Quantity(*widest.normal_load, "N", 4));
