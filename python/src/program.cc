@@ -48,7 +48,7 @@ py::tuple RunCommand(const std::vector<std::string>& words) {
 /// Returns the state of a source of a batch, which other processes give back: name, fault, done,
 /// notes and JSON of the fit.
 py::tuple StateOf(const BatchEntry& entry) {
-  return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, entry.fit);
+  return py::make_tuple(entry.file, entry.fault, entry.done(), entry.notes, entry.fit);
 }
 
 std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
@@ -57,7 +57,6 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
     BatchEntry& entry = entries.emplace_back();
     entry.file = state[0].cast<std::string>();
     entry.fault = state[1].cast<std::string>();
-    entry.done = state[2].cast<bool>();
     entry.notes = state[3].cast<std::vector<std::string>>();
     entry.fit = state[4].cast<std::string>();
   }

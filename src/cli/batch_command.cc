@@ -25,17 +25,13 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
   Validate(request.contact);  // before a directory is made
   MakeFitOptions(request);
   const std::filesystem::path directory = options.report_directory;
-  request::WritePage write_page;
   if (!directory.empty()) {
     std::error_code error;
     std::filesystem::create_directory(directory, error);
     if (error) Refuse("--report: cannot make '{}': {}", directory.string(), error.message());
-    write_page = [&](const report::Report& report, std::size_t k) {
-      io::WriteFileAtomically(directory / request::PageName(k),
-                              ToPage(report, console.command_line));
-    };
   }
-  const auto fits = FitFiles(request, options.strict, options.threads, write_page);
+  const auto fits =
+      FitFiles(request, options.strict, options.threads, directory, console.command_line);
   for (const BatchEntry& fit : fits) {
     Say("batch: note", fit.notes, console);
     if (!fit.fault.empty()) {

@@ -14,6 +14,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/identification/thresholds.h"
+#include "mindahl/io/output_file.h"
 #include "report/html.h"
 #include "report/json.h"
 #include "report/statements.h"
@@ -41,7 +42,7 @@ const auto kRepeated = std::to_array<Repeated>({{"sigma", "sigma", "N/m"},
 /// Returns the row of a file in the table, of the JSON of its fit, which may be null.
 Json RowOf(const BatchEntry& entry, const Json& fit) {
   Json row = {{"file", entry.file},
-              {"done", entry.done},
+              {"done", entry.done()},
               {"samples", At(fit, "/input/samples")},
               {"model", At(fit, "/model")},
               {"initial_state", At(fit, "/initial_state")},
@@ -119,6 +120,8 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
   return repeats;
 }
 
+std::string PageName(std::size_t k) { return fmt::format("page-{}.html", k + 1); }
+
 /// Returns the index of the entries' pages, with a note on the repeats.
 std::string IndexPage(std::span<const BatchEntry> entries, std::string_view title,
                       const Json& repeats, std::string_view note, std::string_view command) {
@@ -155,7 +158,6 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
     entry.notes = report.notes;
     entry.fit = ToJson(report);
     entry.fault = WhyNotEstablished(report.fit, strictness);
-    entry.done = entry.fault.empty();
     entry.verdict = report::VerdictWord(report);
     for (const char* parameter : report::kLawParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
@@ -172,7 +174,8 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
 }
 
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
-                                 std::size_t threads, const WritePage& write_page) {
+                                 std::size_t threads, const std::filesystem::path& pages,
+                                 std::string_view command) {
   std::vector<BatchEntry> entries(request.files.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -181,7 +184,7 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
       own.files = {request.files[k]};
       entries[k] = FitSource(own.files.front(), strictness, [&] {
         report::Report report = FitRecords(own, ReadRecords(own));
-        if (write_page) write_page(report, k);
+        if (!pages.empty()) io::WriteFileAtomically(pages / PageName(k), ToPage(report, command));
         return report;
       });
     }
@@ -201,10 +204,10 @@ BatchAnswer AnswerOf(std::span<const BatchEntry> entries, const std::string& out
     const Json fit = entry.fit.empty() ? Json() : Json::parse(entry.fit);
     table.push_back(RowOf(entry, fit));
     files.push_back({{"file", entry.file},
-                     {"done", entry.done},
+                     {"done", entry.done()},
                      {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
                      {"fit", fit}});
-    if (entry.done) laws.insert(At(fit, "/model"));
+    if (entry.done()) laws.insert(At(fit, "/model"));
   }
   // Parameters of one law are no repeats of another's.
   const bool has_several_laws = laws.size() > 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -16,18 +17,14 @@ namespace mindahl::request {
 struct BatchEntry {
   std::string file;
   std::string fault = {};                    ///< why it is not done; "" where it is
-  bool done = false;                         ///< fitted, and nothing in WhyNotEstablished()
   std::string fit = {};                      ///< its JSON, as `mindahl fit --json` writes it; or ""
   std::vector<std::string> notes = {};       ///< assumptions of the run, one sentence each
   std::string verdict = {};                  ///< one word for the fit's adequacy
   std::vector<std::string> parameters = {};  ///< σ, α and Tc in words
+
+  /// True if it is fitted, and nothing is in WhyNotEstablished().
+  [[nodiscard]] bool done() const { return fault.empty(); }
 };
-
-/// Writes the page of the k-th source; an empty function writes no pages.
-using WritePage = std::function<void(const report::Report&, std::size_t k)>;
-
-/// Returns the name of the page of the k-th source, counted from 0, next to the index.
-inline std::string PageName(std::size_t k) { return "page-" + std::to_string(k + 1) + ".html"; }
 
 /// Fits one source on its own. A fault of the source is one of the entry.
 /// @param fit  reads and fits it
@@ -36,8 +33,11 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
 
 /// Fits each of the request's files on its own, in their order whatever the number of threads.
 /// Options that break a rule, or a page that cannot be written, are a fault of each file.
+/// @param pages    directory for the page of each file, to which the index leads; "" for none
+/// @param command  as of report::ToPage()
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
-                                 std::size_t threads, const WritePage& write_page = {});
+                                 std::size_t threads, const std::filesystem::path& pages = {},
+                                 std::string_view command = {});
 
 /// Holds what `mindahl batch` answers.
 struct BatchAnswer {
