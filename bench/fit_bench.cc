@@ -52,11 +52,11 @@ void OneGradient(benchmark::State& state) {
   GradientBuffers buffers(record.size());
   const NormalizedLaw normalized{.rate = kLaw.tangential_stiffness / kLaw.slip_force,
                                  .shape_exponent = kLaw.shape_exponent};
-  NormalizedResponse response;
   for (auto _ : state) {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    response.Evaluate(model, normalized, path, record.displacement, buffers.t, buffers.gradient());
+    EvaluateNormalizedForce(model, normalized, path, record.displacement, buffers.t,
+                            buffers.gradient());
     benchmark::DoNotOptimize(buffers.columns.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(record.size()));

@@ -83,9 +83,8 @@ void Gradient(benchmark::State& state, const FrictionModel& model, const SeriesS
   const NormalizedLaw law{.rate = kLaw.tangential_stiffness / kLaw.slip_force,
                           .shape_exponent = kLaw.shape_exponent,
                           .spring_travel = kLaw.slip_force / rig.stiffness};
-  NormalizedResponse response;
   for (auto _ : state) {
-    response.Evaluate(model, law, path, x, buffers.t, buffers.gradient());
+    EvaluateNormalizedForce(model, law, path, x, buffers.t, buffers.gradient());
     benchmark::DoNotOptimize(buffers.columns.data());
   }
   ReportPerSample(state, x.size());

@@ -47,11 +47,11 @@ double OneGradientMilliseconds(int repeats, const Record& record, const BranchLa
   GradientBuffers buffers(record.size());
   const NormalizedLaw normalized{.rate = law.tangential_stiffness / law.slip_force,
                                  .shape_exponent = law.shape_exponent};
-  NormalizedResponse response;
   return MedianMilliseconds(repeats, [&] {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    response.Evaluate(model, normalized, path, record.displacement, buffers.t, buffers.gradient());
+    EvaluateNormalizedForce(model, normalized, path, record.displacement, buffers.t,
+                            buffers.gradient());
   });
 }
 

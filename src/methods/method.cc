@@ -196,8 +196,7 @@ Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
   const TableShape shape(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
     const LoadingPath path = PathOf(model, drive);
-    models::ScaledBranches branches;
-    models::EvaluatePath(model, law, 0.0, shape, path, drive.displacement, force, branches);
+    models::EvaluatePath(model, law, 0.0, shape, path, drive.displacement, force);
     return CostOf(path, force.size(), kLookUp);
   };
 }

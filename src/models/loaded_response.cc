@@ -6,6 +6,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
+#include "models/load_zones.h"
 
 namespace mindahl::models {
 namespace {
@@ -29,10 +30,11 @@ struct LawUnderLoad {
 /// @param keep     takes each sample and its force over μN₀
 template <typename Real, typename Share, typename Keep>
 void Follow(const LoadedHistory& history, const LawUnderLoad<Real>& law, const Share& share,
-            const Real& at_rest, ZonedContact<Real>& contact, Keep keep) {
+            const Real& at_rest, Keep keep) {
   const std::size_t first = history.before.empty() ? 0 : history.before.front();
   double load = history.load_ratio[first];
   LoadRim<Real> rim = law.RimUnder(load, history.log_load_ratio[first]);
+  ZonedContact<Real> contact;
   StartUnloaded(rim, at_rest, contact);
   const auto move = [&](std::size_t i) {
     if (history.load_ratio[i] != load) {
@@ -112,9 +114,9 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
   }
 }
 
-void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
-                                        double unloaded, std::span<double> t,
-                                        const NormalizedGradient& gradient) {
+void EvaluateNormalizedForce(const NormalizedLaw& law, const LoadedHistory& history,
+                             double unloaded, std::span<double> t,
+                             const NormalizedGradient& gradient) {
   Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
   if (law.shape_exponent >= 1) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent,
@@ -130,7 +132,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
   if (IsEmpty(gradient)) {
     backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
       Follow(history, LawUnderLoad<double>{std::log(law.rate), 1 - law.shape_exponent},
-             ShareOfWidth{shape, law.shape_exponent}, at_rest.value(), plain_,
+             ShareOfWidth{shape, law.shape_exponent}, at_rest.value(),
              [&](std::size_t i, double force) { t[i] = force; });
     });
     return;
@@ -142,7 +144,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
       {std::log(law.rate), Eigen::Vector3d::Unit(kRate)},
       {1 - law.shape_exponent, -Eigen::Vector3d::Unit(kShape)}};
   Follow(history, with_derivatives, ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent},
-         at_rest, with_derivatives_, [&](std::size_t i, const Tangent& force) {
+         at_rest, [&](std::size_t i, const Tangent& force) {
            t[i] = force.value();
            for (const ResponseParameter by : {kRate, kShape, kUnloaded}) {
              const auto column = static_cast<std::size_t>(by);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mindahl/models/loading_path.h"
-#include "models/load_zones.h"
 #include "models/normalized_response.h"
 
 namespace mindahl::models {
@@ -35,25 +34,19 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
                        std::span<const std::size_t> reversals, InitialState state,
                        LoadedHistory& history);
 
-/// The force under a varying load (load_zones.h) over μN₀ and its gradient, for solvers: σ_ref is
-/// that under N₀, and t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
-class NormalizedLoadedResponse {
- public:
-  /// @param law       α < 1; no spring in series, behind which the contact's own displacement would
-  ///                  depend on the force
-  /// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at
-  ///                  where it has been through samples before
-  /// @param t         written, of the record's size; |t| <= N/N₀
-  /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0.
-  ///                  Exact, where t has derivatives; taken along with the recursion, at two to
-  ///                  three times its cost
-  /// @throws InvalidArgument for a law or sizes that break a rule
-  void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
-                std::span<double> t, const NormalizedGradient& gradient = {});
-
- private:
-  ZonedContact<double> plain_;
-  ZonedContact<Tangent> with_derivatives_;
-};
+/// Computes the force under a varying load (load_zones.h) over μN₀ and its gradient, for solvers:
+/// σ_ref is that under N₀, and t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only.
+/// @param law       α < 1; no spring in series, behind which the contact's own displacement would
+///                  depend on the force
+/// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at where
+///                  it has been through samples before
+/// @param t         written, of the record's size; |t| <= N/N₀
+/// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0.
+///                  Exact, where t has derivatives; taken along with the recursion, at two to three
+///                  times its cost
+/// @throws InvalidArgument for a law or sizes that break a rule
+void EvaluateNormalizedForce(const NormalizedLaw& law, const LoadedHistory& history,
+                             double unloaded, std::span<double> t,
+                             const NormalizedGradient& gradient = {});
 
 }  // namespace mindahl::models

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
@@ -46,11 +47,11 @@ Gradient DifferentiateSample(const backbone::InSeries& shape, const ScaledBranch
   return result;
 }
 
-/// Writes the derivatives of every branch of `scaled`, which ScaleBranches made.
-void DifferentiateBranches(const BranchScaling& scaling, const LoadingPath& path,
-                           const SprungShape& shape, const ScaledBranches& scaled,
-                           std::vector<BranchGradient>& gradients) {
-  gradients.clear();
+/// Returns the derivatives of every branch of `scaled`, which ScaleBranches made.
+std::vector<BranchGradient> DifferentiateBranches(const BranchScaling& scaling,
+                                                  const LoadingPath& path, const SprungShape& shape,
+                                                  const ScaledBranches& scaled) {
+  std::vector<BranchGradient> gradients;
   gradients.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
     const BranchScale scale = scaling.ScaleOf(branch, scaled[gradients.size()].force);
@@ -83,6 +84,7 @@ void DifferentiateBranches(const BranchScaling& scaling, const LoadingPath& path
     result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
     result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);
   }
+  return gradients;
 }
 
 /// Computes what the kernel does not: of a branch in series with a spring, or by an asymmetry.
@@ -130,52 +132,25 @@ double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) 
   return square * (0.5 + sum);
 }
 
-}  // namespace
+/// d with its derivatives by −ln Tc, α and T₀/Tc.
+struct Point {
+  double d = 0.0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
 
-void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLaw& law,
-                                  const LoadingPath& path, std::span<const double> displacement,
-                                  std::span<double> t, const NormalizedGradient& gradient) {
-  // Forces are over Tc.
-  const BranchLaw branch_law = {
-      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
-  Validate(branch_law);
-  RequireSizes(path, displacement, "response", t);
-  if (IsEmpty(gradient)) {
-    WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
-      EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t,
-                   branches_);
-    });
-    return;
-  }
-  const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const double limit = path.limit();
-  const SprungShape shape{law.shape_exponent, law.spring_travel};
-  ScaleBranches(scaling, path, shape, branches_);
-  DifferentiateBranches(scaling, path, shape, branches_, gradients_);
-  const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
-  if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);
-  for (const BranchRun& run : path.runs) {
-    const auto b = static_cast<std::size_t>(run.branch);
-    const auto part = [&](std::span<double> column) {
-      return column.empty() ? column : column.subspan(run.begin, run.end - run.begin);
-    };
-    const std::span<const double> places = displacement.subspan(run.begin, run.end - run.begin);
-    NormalizedGradient of_run;
-    std::ranges::transform(gradient, of_run.begin(), part);
-    if (has_kernel) {
-      DifferentiateGeneralRun(branches_[b], gradients_[b], law.shape_exponent, limit, places,
-                              part(t), of_run);
-    } else {
-      DifferentiateRun(ShapeOn(shape, branches_[b]), branches_[b], gradients_[b], limit, places,
-                       part(t), of_run);
-    }
-  }
-}
+/// A branch along which the force is imposed.
+struct ForcedBranch {
+  double origin = 0.0;  // T_r [N]
+  double height = 0.0;  // m·v·Tc [N]
+  BranchScale scale;    // m and v
+  double unit = 1.0;    // m·v^β
+  bool is_virgin = false;
+  Eigen::Vector3d remaining_gradient = Eigen::Vector3d::Zero();  // of v
+  Point start = {};                                              // at the origin
+};
 
 /// d is not finite at slip and beyond.
-NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& branch,
-                                                              const ForcedLaw& law, double force,
-                                                              bool with_gradient) {
+Point PointOn(const ForcedBranch& branch, const ForcedLaw& law, double force, bool with_gradient) {
   // The difference and what its rounding leaves out (Knuth's sum): next to slip all of it counts.
   const double way = force - branch.origin;
   const double back = way - force;
@@ -205,30 +180,72 @@ NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& bran
   return point;
 }
 
-bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLaw& law,
-                                      const LoadingPath& path, std::span<const double> force,
-                                      std::span<double> d, const DisplacementGradient& gradient) {
+}  // namespace
+
+void EvaluateNormalizedForce(const FrictionModel& model, const NormalizedLaw& law,
+                             const LoadingPath& path, std::span<const double> displacement,
+                             std::span<double> t, const NormalizedGradient& gradient) {
+  // Forces are over Tc.
+  const BranchLaw branch_law = {
+      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
+  Validate(branch_law);
+  RequireSizes(path, displacement, "response", t);
+  if (IsEmpty(gradient)) {
+    WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
+      EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t);
+    });
+    return;
+  }
+  const BranchScaling scaling(model, branch_law, law.spring_travel);
+  const double limit = path.limit();
+  const SprungShape shape{law.shape_exponent, law.spring_travel};
+  const ScaledBranches branches = ScaleBranches(scaling, path, shape);
+  const std::vector<BranchGradient> gradients =
+      DifferentiateBranches(scaling, path, shape, branches);
+  const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
+  if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);
+  for (const BranchRun& run : path.runs) {
+    const auto b = static_cast<std::size_t>(run.branch);
+    const auto part = [&](std::span<double> column) {
+      return column.empty() ? column : column.subspan(run.begin, run.end - run.begin);
+    };
+    const std::span<const double> places = displacement.subspan(run.begin, run.end - run.begin);
+    NormalizedGradient of_run;
+    std::ranges::transform(gradient, of_run.begin(), part);
+    if (has_kernel) {
+      DifferentiateGeneralRun(branches[b], gradients[b], law.shape_exponent, limit, places, part(t),
+                              of_run);
+    } else {
+      DifferentiateRun(ShapeOn(shape, branches[b]), branches[b], gradients[b], limit, places,
+                       part(t), of_run);
+    }
+  }
+}
+
+bool EvaluateNormalizedDisplacement(const FrictionModel& model, const ForcedLaw& law,
+                                    const LoadingPath& path, std::span<const double> force,
+                                    std::span<double> d, const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
   const bool with_gradient = !IsEmpty(gradient);
   // Forces count from the origin of a virgin contact, or from the centre of a steady loop.
-  const models::Branch& first = path.branches.front();
+  const Branch& first = path.branches.front();
   const bool at_extreme = first.start == BranchStart::kSteadyExtreme;
   const double zero = at_extreme ? first.origin + first.direction * first.amplitude : first.origin;
-  branches_.clear();
-  branches_.reserve(path.branches.size());
-  for (const models::Branch& from : path.branches) {
+  std::vector<ForcedBranch> branches;
+  branches.reserve(path.branches.size());
+  for (const Branch& from : path.branches) {
     const double t = (from.origin - zero) / law.slip_force;
     const bool is_virgin = IsVirgin(from.start);
     const BranchScale scale = model.scale(from.direction * t, is_virgin);
-    Branch branch{.origin = from.origin,
-                  .height = scale.span * scale.remaining * law.slip_force,
-                  .scale = scale,
-                  .unit = scale.span * std::pow(scale.remaining, 1 - law.shape_exponent),
-                  .is_virgin = is_virgin,
-                  .remaining_gradient =
-                      scale.remaining_per_force * from.direction * Eigen::Vector3d(t, 0.0, -1.0)};
+    ForcedBranch branch{.origin = from.origin,
+                        .height = scale.span * scale.remaining * law.slip_force,
+                        .scale = scale,
+                        .unit = scale.span * std::pow(scale.remaining, 1 - law.shape_exponent),
+                        .is_virgin = is_virgin,
+                        .remaining_gradient = scale.remaining_per_force * from.direction *
+                                              Eigen::Vector3d(t, 0.0, -1.0)};
     if (from.start == BranchStart::kReversal) {
-      const Branch& parent = branches_[static_cast<std::size_t>(from.parent)];
+      const ForcedBranch& parent = branches[static_cast<std::size_t>(from.parent)];
       branch.start = PointOn(parent, law, from.origin, with_gradient);
     } else if (from.start == BranchStart::kSteadyExtreme) {
       // The loop is symmetric: half of the branch to the other extreme lies on either side.
@@ -237,10 +254,10 @@ bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLa
       branch.start = {-point.d / 2, -point.gradient / 2};
       branch.start.gradient[2] = 0.0;
     }
-    branches_.push_back(branch);
+    branches.push_back(branch);
   }
   for (const BranchRun& run : path.runs) {
-    const Branch& branch = branches_[static_cast<std::size_t>(run.branch)];
+    const ForcedBranch& branch = branches[static_cast<std::size_t>(run.branch)];
     for (std::size_t i = run.begin; i < run.end; ++i) {
       const Point point = PointOn(branch, law, force[i], with_gradient);
       d[i] = point.d;

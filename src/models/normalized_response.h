@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
@@ -45,26 +44,18 @@ bool IsEmpty(const std::array<std::span<double>, kColumns>& gradient) {
   return std::ranges::all_of(gradient, &std::span<double>::empty);
 }
 
-/// EvaluateForce (response.h has the equations) over Tc, and its gradient in closed form, for
-/// solvers: buffers are kept, so that nothing is allocated once they are large enough. Tc itself
-/// and all other linear terms are the caller's. Where the law has a corner (α = 0 at slip) the
-/// derivatives are those of the slipping side. On the virgin curve the error is below 6 ε of the
-/// force, and below 32 ε of 1, by δ₀ of κ, to what a change of δ by 4 ε would make: for α < 1/2 the
-/// slope varies without bound next to slip.
-class NormalizedResponse {
- public:
-  /// @param path      as from MakeLoadingPath on the same displacements, for the model's memory
-  /// @param t         written, of the same size
-  /// @param gradient  columns of the same size, or empty
-  /// @throws InvalidArgument as EvaluateForce
-  void Evaluate(const FrictionModel& model, const NormalizedLaw& law, const LoadingPath& path,
-                std::span<const double> displacement, std::span<double> t,
-                const NormalizedGradient& gradient = {});
-
- private:
-  ScaledBranches branches_;
-  std::vector<BranchGradient> gradients_;
-};
+/// Computes EvaluateForce (response.h has the equations) over Tc, and its gradient in closed form,
+/// for solvers. Tc itself and all other linear terms are the caller's. Where the law has a corner
+/// (α = 0 at slip) the derivatives are those of the slipping side.
+/// @param path      as from MakeLoadingPath on the same displacements, for the model's memory
+/// @param t         written, of the same size
+/// @param gradient  columns of the same size, or empty
+/// @throws InvalidArgument as EvaluateForce
+/// On the virgin curve the error is below 6 ε of the force, and below 32 ε of 1, by δ₀ of κ, to
+/// what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound next to slip.
+void EvaluateNormalizedForce(const FrictionModel& model, const NormalizedLaw& law,
+                             const LoadingPath& path, std::span<const double> displacement,
+                             std::span<double> t, const NormalizedGradient& gradient = {});
 
 /// Holds the parameters on which a displacement over Tc/σ depends along a path of forces: the
 /// displacement itself is linear in the compliance 1/σ.
@@ -77,48 +68,24 @@ struct ForcedLaw {
 /// one is not wanted.
 using DisplacementGradient = std::array<std::span<double>, 3>;
 
-/// The inverse of NormalizedResponse: d = σδ/Tc, from where the contact is unloaded, of a contact
-/// whose force is imposed, and its gradient, for solvers. T and δ turn together, so that Madelung's
-/// rules hold of forces as they do of displacements (docs/theory.md §5). On a branch from the
-/// reading T_r, which is where the force without its offset is t_r·Tc,
+/// Computes the inverse of EvaluateNormalizedForce: d = σδ/Tc, from where the contact is unloaded,
+/// of a contact whose force is imposed, and its gradient, for solvers. T and δ turn together, so
+/// that Madelung's rules hold of forces as they do of displacements (docs/theory.md §5). On a
+/// branch from the reading T_r, which is where the force without its offset is t_r·Tc,
 ///   d = d_r + s·m·v^β·y(φ),   φ = |T − T_r|/(m·v·Tc),   v = 1, or 1 − s·t_r of Dahl's own law
-/// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law). A branch has a relative
-/// error below (6 + |1 − α|·|ln u|) ε. Keeps its buffer: nothing is allocated once it is large
-/// enough. Cost: three powers a sample with the gradient.
-class NormalizedDisplacement {
- public:
-  /// @param path      as from MakeLoadingPath on the same forces, for the model's memory: the
-  ///                  branches follow from the forces as they do from displacements
-  /// @param force     [N], its offset included
-  /// @param d         written, of the same size
-  /// @param gradient  columns of the same size, or empty
-  /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
-  ///   nothing of use from the first of these samples on, where it is not finite
-  /// @throws InvalidArgument for sizes that differ
-  bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
-                std::span<const double> force, std::span<double> d,
-                const DisplacementGradient& gradient = {});
-
- private:
-  /// d with its derivatives by −ln Tc, α and T₀/Tc.
-  struct Point {
-    double d = 0.0;
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  };
-  struct Branch {
-    double origin = 0.0;  // T_r [N]
-    double height = 0.0;  // m·v·Tc [N]
-    BranchScale scale;    // m and v
-    double unit = 1.0;    // m·v^β
-    bool is_virgin = false;
-    Eigen::Vector3d remaining_gradient = Eigen::Vector3d::Zero();  // of v
-    Point start = {};                                              // at the origin
-  };
-  static Point PointOn(const Branch& branch, const ForcedLaw& law, double force,
-                       bool with_gradient);
-
-  std::vector<Branch> branches_;
-};
+/// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law).
+/// @param path      as from MakeLoadingPath on the same forces, for the model's memory
+/// @param force     [N], its offset included
+/// @param d         written, of the same size
+/// @param gradient  columns of the same size, or empty
+/// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
+///   nothing of use from the first of these samples on, where it is not finite
+/// @throws InvalidArgument for sizes that differ
+/// A branch has a relative error below (6 + |1 − α|·|ln u|) ε. Cost: three powers a sample with the
+/// gradient.
+bool EvaluateNormalizedDisplacement(const FrictionModel& model, const ForcedLaw& law,
+                                    const LoadingPath& path, std::span<const double> force,
+                                    std::span<double> d, const DisplacementGradient& gradient = {});
 
 // The branch law at many displacements at once, for fits: the same arithmetic for every sample,
 // without a jump or a call, so that the compiler makes vectors of it. Built for several

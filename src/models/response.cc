@@ -17,9 +17,8 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
   Validate(law);
   RequireSizes(path, displacement, "force", force);
   const double travel = SpringTravel(law, rig);
-  ScaledBranches branches;
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
-    EvaluatePath(model, law, travel, shape, path, displacement, force, branches);
+    EvaluatePath(model, law, travel, shape, path, displacement, force);
   });
 }
 

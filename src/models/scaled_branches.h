@@ -133,9 +133,9 @@ class BranchScaling {
 
 /// @param shape  φ, as in backbone.h: has Force(y); or a SprungShape of it
 template <typename Shape>
-void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const Shape& shape,
-                   ScaledBranches& scaled) {
-  scaled.clear();
+ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
+                             const Shape& shape) {
+  ScaledBranches scaled;
   scaled.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
     const auto force_of_parent = [&](std::size_t parent_index) {
@@ -148,6 +148,7 @@ void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const 
                                    scaling.OriginForce(branch, force_of_parent, path.asymmetry),
                                    VirginLimit(path, branch)));
   }
+  return scaled;
 }
 
 /// @throws InvalidArgument unless a path and what becomes of it are of the displacements
@@ -173,12 +174,12 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
 
 /// Computes the forces [N] along a path.
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
-/// @param branches       written: those of the path
 template <typename Shape>
 void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double spring_travel,
                   const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
-                  std::span<double> force, ScaledBranches& branches) {
-  ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
+                  std::span<double> force) {
+  const ScaledBranches branches =
+      ScaleBranches(BranchScaling(model, law, spring_travel), path, shape);
   const double limit = path.limit();
   for (const BranchRun& run : path.runs) {
     const std::size_t count = run.end - run.begin;

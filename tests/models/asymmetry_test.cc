@@ -146,8 +146,7 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
           std::vector<double> t(walk.size());
           NormalizedGradient gradient;
           gradient[kAsymmetry] = derivative;
-          NormalizedResponse response;
-          response.Evaluate(Masing(), law, path, walk, t, gradient);
+          EvaluateNormalizedForce(Masing(), law, path, walk, t, gradient);
           return t;
         };
         for (const double asymmetry : {-0.45, 0.0, 0.2}) {

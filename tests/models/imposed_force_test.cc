@@ -143,8 +143,8 @@ LoadingPath PathOfForces(const FrictionModel& model, const History& force,
 History Reduced(const FrictionModel& model, const ForcedLaw& law, const History& force,
                 const InitialContact& initial = {}) {
   History d(force.size());
-  NormalizedDisplacement displacement;
-  EXPECT_TRUE(displacement.Evaluate(model, law, PathOfForces(model, force, initial), force, d));
+  EXPECT_TRUE(
+      EvaluateNormalizedDisplacement(model, law, PathOfForces(model, force, initial), force, d));
   return d;
 }
 
@@ -156,7 +156,7 @@ struct Gradient {
   History unloaded_force;
 };
 
-TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
+TEST(EvaluateNormalizedDisplacement, GradientIsThatOfDifferences) {
   // Central differences of step h err by h²/6 of the third derivative, which (1 − φ)^−3 < 1e4
   // bounds here, and by rounding over h.
   constexpr double kStep = 1e-5;
@@ -170,8 +170,7 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
         const InitialContact initial{.state = state, .unloaded_displacement = 0.05};
         Gradient gradient(force.size());
         History d(force.size());
-        NormalizedDisplacement displacement;
-        ASSERT_TRUE(displacement.Evaluate(
+        ASSERT_TRUE(EvaluateNormalizedDisplacement(
             model, {kSlipForce, alpha}, PathOfForces(model, force, initial), force, d,
             {gradient.log_slip_force, gradient.shape_exponent, gradient.unloaded_force}));
         // Each column alone is the same.
@@ -180,8 +179,8 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
                                                               {{{}, alone.shape_exponent, {}}},
                                                               {{{}, {}, alone.unloaded_force}}}};
         for (const DisplacementGradient& column : columns) {
-          ASSERT_TRUE(displacement.Evaluate(model, {kSlipForce, alpha},
-                                            PathOfForces(model, force, initial), force, d, column));
+          ASSERT_TRUE(EvaluateNormalizedDisplacement(
+              model, {kSlipForce, alpha}, PathOfForces(model, force, initial), force, d, column));
         }
         EXPECT_EQ(alone.log_slip_force, gradient.log_slip_force);
         EXPECT_EQ(alone.shape_exponent, gradient.shape_exponent);
@@ -212,13 +211,14 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
   }
 }
 
-TEST(NormalizedDisplacement, OfAForceAtSlipIsNone) {
+TEST(EvaluateNormalizedDisplacement, OfAForceAtSlipIsNone) {
   const History force = {0.0, 0.5, 0.99, 1.0, 0.5};
   History d(force.size());
-  NormalizedDisplacement displacement;
   const FrictionModel& model = Model("mindlin-dahl");
-  EXPECT_FALSE(displacement.Evaluate(model, {1.0, 0.4}, PathOfForces(model, force), force, d));
-  EXPECT_TRUE(displacement.Evaluate(model, {1.001, 0.4}, PathOfForces(model, force), force, d));
+  EXPECT_FALSE(
+      EvaluateNormalizedDisplacement(model, {1.0, 0.4}, PathOfForces(model, force), force, d));
+  EXPECT_TRUE(
+      EvaluateNormalizedDisplacement(model, {1.001, 0.4}, PathOfForces(model, force), force, d));
 }
 
 }  // namespace

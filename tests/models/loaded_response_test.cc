@@ -48,11 +48,11 @@ LoadedHistory HistoryOf(const Path& path, InitialState state = InitialState::kVi
 
 History Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded = 0.0) {
   History t(history.displacement.size());
-  NormalizedLoadedResponse().Evaluate(law, history, unloaded, t);
+  EvaluateNormalizedForce(law, history, unloaded, t);
   return t;
 }
 
-TEST(NormalizedLoadedResponse, IsTheForceUnderLoadOverTheSlipForce) {
+TEST(EvaluateNormalizedForceUnderLoad, IsTheForceUnderLoadOverTheSlipForce) {
   // 8 ε·(σ·max|δ| + Tc/(1−α)) each, and as much of powers by way of logarithms;
   // σ·max|δ| <= 5, loads <= 3, 1/(1−α) <= 20 here.
   constexpr double kRounding = 2 * 8 * 2.3e-16 * (5 * 3 + 3 * 20);
@@ -95,7 +95,7 @@ History Differences(Function function, double h) {
   return result;
 }
 
-TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
+TEST(EvaluateNormalizedForceUnderLoad, HasTheDerivativesOfItsDifferences) {
   // ε/h = 1e-12 of rounding; a sample that a zone's edge or complete slip passes within 2h of the
   // point has a derivative that jumps, or for α < 1/2 one that bends as √h: a handful of samples.
   constexpr double kStep = 1e-4;
@@ -116,8 +116,8 @@ TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
         History t(samples);
         std::array<History, 3> columns;
         for (History& column : columns) column.resize(samples);
-        NormalizedLoadedResponse().Evaluate({.rate = kRate, .shape_exponent = alpha}, history,
-                                            unloaded, t, {columns[0], columns[1], columns[2]});
+        EvaluateNormalizedForce({.rate = kRate, .shape_exponent = alpha}, history, unloaded, t,
+                                {columns[0], columns[1], columns[2]});
         EXPECT_EQ(t.size(), samples);
         const std::array<History, 3> expected = {
             Differences([&](double h) { return at(h, 0, 0); }, kStep),
@@ -171,12 +171,11 @@ TEST(LoadedHistory, OfASteadyContactIsThatOfOneThatHasCycledForLong) {
   }
 }
 
-TEST(NormalizedLoadedResponse, RefusesWhatTheLawDoesNotModel) {
+TEST(EvaluateNormalizedForceUnderLoad, RefusesWhatTheLawDoesNotModel) {
   const LoadedHistory history = HistoryOf(PathOf({}));
   History t(history.displacement.size());
-  NormalizedLoadedResponse response;
   const auto message = [&](const NormalizedLaw& law) {
-    return MessageOf([&] { response.Evaluate(law, history, 0.0, t); });
+    return MessageOf([&] { EvaluateNormalizedForce(law, history, 0.0, t); });
   };
   EXPECT_THAT(message({.rate = 1.0, .shape_exponent = 1.0}), HasSubstr("must be < 1"));
   EXPECT_THAT(message({.rate = 1.0, .spring_travel = 0.1}), HasSubstr("must be 0"));

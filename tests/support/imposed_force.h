@@ -18,8 +18,8 @@ inline std::vector<double> DisplacementUnder(const models::FrictionModel& model,
   const models::LoadingPath path =
       models::MakeLoadingPath(force, loop::FindReversals(force, 0.0), model.memory, {});
   std::vector<double> displacement(force.size());
-  models::NormalizedDisplacement().Evaluate(model, {law.slip_force, law.shape_exponent}, path,
-                                            force, displacement);
+  models::EvaluateNormalizedDisplacement(model, {law.slip_force, law.shape_exponent}, path, force,
+                                         displacement);
   for (double& each : displacement) each *= law.slip_force / law.tangential_stiffness;
   return displacement;
 }

@@ -179,26 +179,26 @@ inline std::vector<Measurement> Measurements() {
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginForce(law, x), exact.force);
        }},
-      {"NormalizedResponse, force", "value", 6.0,
+      {"EvaluateNormalizedForce, force", "value", 6.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginGradient(law, x).force, exact.force);
        }},
-      {"NormalizedResponse, ln σ", "Tc", 32.0,
+      {"EvaluateNormalizedForce, ln σ", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogStiffness],
                               exact, &Exact::per_log_stiffness, law.slip_force);
        }},
-      {"NormalizedResponse, α", "Tc", 32.0,
+      {"EvaluateNormalizedForce, α", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerShapeExponent],
                               exact, &Exact::per_shape, law.slip_force);
        }},
-      {"NormalizedResponse, ln Tc", "Tc", 32.0,
+      {"EvaluateNormalizedForce, ln Tc", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogSlipForce],
                               exact, &Exact::per_log_slip_force, law.slip_force);
        }},
-      {"NormalizedResponse, δ₀", "σ", 32.0,
+      {"EvaluateNormalizedForce, δ₀", "σ", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x,
                               -VirginGradient(law, x).gradient[models::kPerUnloadedDisplacement],

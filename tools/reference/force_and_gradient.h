@@ -30,12 +30,11 @@ inline void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw
   const auto column = [&](std::size_t index) {
     return std::span(columns).subspan(index * size, size);
   };
-  NormalizedResponse().Evaluate(model,
-                                {.rate = law.tangential_stiffness / law.slip_force,
-                                 .shape_exponent = law.shape_exponent,
-                                 .spring_travel = law.slip_force / rig.stiffness},
-                                path, displacement, force,
-                                {column(0), column(1), column(2), column(3)});
+  EvaluateNormalizedForce(model,
+                          {.rate = law.tangential_stiffness / law.slip_force,
+                           .shape_exponent = law.shape_exponent,
+                           .spring_travel = law.slip_force / rig.stiffness},
+                          path, displacement, force, {column(0), column(1), column(2), column(3)});
   for (std::size_t i = 0; i < size; ++i) {
     double* row = &gradient[i * kGradientColumns];
     const double per_rate = column(0)[i];

@@ -196,22 +196,23 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
   const ScaledRecord& record = problem_.data->records[r];
   const models::NormalizedLaw law = LawUnder(problem_, theta, record);
   if (!record.load_ratio.empty() && IsMasing(problem_)) {
-    loaded_response_.Evaluate(law, histories_[r], theta[problem_.parameters.PositionOfOrigin(r)], t,
-                              GradientOf(columns));
+    models::EvaluateNormalizedForce(
+        law, histories_[r], theta[problem_.parameters.PositionOfOrigin(r)], t, GradientOf(columns));
     return;
   }
   const Motion& motion = MotionOf(r, theta);
   const auto& [moved, path] = motion.paths.front();
   if (record.imposed == loop::Channel::kForce) {
-    const bool is_below_slip = displacement_.Evaluate(
+    const bool is_below_slip = models::EvaluateNormalizedDisplacement(
         *problem_.model, {std::exp(theta[kSlipForce]), theta[kShape]}, path, record.force, t,
         {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
     if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
   } else if (motion.paths.size() > 1) {
     EvaluateBehindGap(law, motion, t, columns);
   } else {
-    response_.Evaluate(*problem_.model, law, path, moved.empty() ? record.displacement : moved, t,
-                       GradientOf(columns));
+    models::EvaluateNormalizedForce(*problem_.model, law, path,
+                                    moved.empty() ? record.displacement : moved, t,
+                                    GradientOf(columns));
   }
   if (moves_ >= problem_.parameters.size()) return;
   const std::span<double> by_amount = columns[problem_.parameters[moves_].term->id];
@@ -241,7 +242,8 @@ void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion&
   }
   for (const double sign : {-1.0, 1.0}) {
     const auto& [displacement, path] = motion.paths[sign > 0 ? 0 : 1];
-    response_.Evaluate(*problem_.model, law, path, displacement, forces, GradientOf(of_side));
+    models::EvaluateNormalizedForce(*problem_.model, law, path, displacement, forces,
+                                    GradientOf(of_side));
     for (std::size_t i = 0; i < t.size(); ++i) {
       if (!(sign * forces[i] >= 0)) continue;
       t[i] = forces[i];

@@ -89,13 +89,10 @@ class Response {
   [[nodiscard]] bool Has(TermId id) const { return !problem_.parameters[RowOf(id)].absent; }
 
   const Problem& problem_;
-  std::size_t moves_;                             // of the parameter that moves the contact
-  std::vector<std::vector<models::Turn>> turns_;  // of each record's motion
-  std::vector<Motion> motions_;                   // of each record
-  std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
-  models::NormalizedResponse response_;
-  models::NormalizedDisplacement displacement_;
-  models::NormalizedLoadedResponse loaded_response_;
+  std::size_t moves_;                              // of the parameter that moves the contact
+  std::vector<std::vector<models::Turn>> turns_;   // of each record's motion
+  std::vector<Motion> motions_;                    // of each record
+  std::vector<models::LoadedHistory> histories_;   // of records under a load that varies
   std::map<TermId, Eigen::VectorXd> derivatives_;  // of t; a search resizes none
 };
 
