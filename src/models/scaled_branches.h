@@ -140,9 +140,7 @@ ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& pa
   for (const Branch& branch : path.branches) {
     const auto force_of_parent = [&](std::size_t parent_index) {
       const ScaledBranch& parent = scaled[parent_index];
-      const double e = branch.origin - parent.origin;
-      const double phi = ShapeOn(shape, parent).Force(parent.Normalize(e));
-      return parent.force + std::copysign(parent.height * phi, e);
+      return parent.ForceAt(branch.origin, ShapeOn(shape, parent));
     };
     scaled.push_back(scaling.Start(branch,
                                    scaling.OriginForce(branch, force_of_parent, path.asymmetry),
@@ -165,10 +163,7 @@ template <typename Shape>
 void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_force, double limit,
                  std::span<const double> displacement, std::span<double> force) {
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const double e = displacement[i] - branch.origin;
-    const double phi = shape.Force(branch.Normalize(e));
-    const double t = branch.force + std::copysign(branch.height * phi, e);
-    force[i] = slip_force * std::clamp(t, -limit, limit);
+    force[i] = slip_force * std::clamp(branch.ForceAt(displacement[i], shape), -limit, limit);
   }
 }
 

@@ -46,18 +46,17 @@ class ContactState {
   /// opened too. Memory: 32 bytes an extreme that is remembered, none for Dahl's own law; it grows
   /// with the nesting alone, and nothing else is allocated.
   double Move(double displacement) {
-    if (!course_.HoldsTo(displacement)) Turn(displacement);
+    if (!HoldsTo(displacement)) Turn(displacement);
     displacement_ = displacement;
-    course_.ahead = course_.direction * displacement;
-    force_over_slip_ = course_.ForceOverSlip(shape_, displacement);
+    force_over_slip_ = course_.branch.ForceAt(displacement, shape_);
     return Force();
   }
 
   /// Returns or throws what Move(δ) would, without moving. Costs as much as Move; but each Peek
   /// that would close n loops examines all n again.
   [[nodiscard]] double Peek(double displacement) const {
-    return course_.HoldsTo(displacement) ? Force(course_.ForceOverSlip(shape_, displacement))
-                                         : PeekAcrossBranches(displacement);
+    return HoldsTo(displacement) ? Force(course_.branch.ForceAt(displacement, shape_))
+                                 : PeekAcrossBranches(displacement);
   }
 
   /// Returns T [N] at the present displacement.
@@ -82,53 +81,39 @@ class ContactState {
  private:
   using Jenkins = backbone::JenkinsShape;
   using Mindlin = backbone::MindlinShape;
-  /// φ on a branch; behind a spring each branch has its own.
-  using Shape = std::variant<Jenkins, Mindlin, backbone::GeneralShape<double>, backbone::InSeries>;
 
-  /// A branch as it is run in one direction s, in which sgn(e) = s.
+  /// φ on a branch; behind a spring each branch has its own.
+  struct Shape {
+    std::variant<Jenkins, Mindlin, backbone::GeneralShape<double>, backbone::InSeries> kind;
+
+    [[nodiscard]] double Force(double y) const {
+      if (std::holds_alternative<Jenkins>(kind)) return Jenkins{}.Force(y);
+      if (std::holds_alternative<Mindlin>(kind)) return Mindlin{}.Force(y);
+      return TranscendentalForce(y);
+    }
+    [[nodiscard]] double TranscendentalForce(double y) const;
+  };
+
+  /// A branch as it is run in one direction.
   struct Course {
     ScaledBranch branch;
     double direction = 0.0;  // s = ±1; 0 before any motion
-    double start = 0.0;      // s·origin
-    double ahead = 0.0;      // s·δ, of the present displacement
     double end = 0.0;        // s times the displacement before which the branch holds
-    double rise = 0.0;       // s·height
-
-    /// True if a displacement is neither a reversal, nor beyond the end, nor NaN.
-    [[nodiscard]] bool HoldsTo(double displacement) const {
-      const double there = direction * displacement;
-      return there >= ahead && there < end;
-    }
-    /// Returns y.
-    [[nodiscard]] double Reduced(double displacement) const {
-      return branch.rate * (direction * displacement - start);
-    }
-    [[nodiscard]] double ForceOverSlip(const Shape& shape, double displacement) const {
-      return branch.force + rise * Share(shape, Reduced(displacement));
-    }
+    std::size_t open = 1;    // branches, with this one
   };
 
-  /// Holds a branch that is entered, and how many branches are then open.
-  struct Entry {
-    Course course;
-    std::size_t open = 1;
-  };
-
-  /// Returns φ(y).
-  static double Share(const Shape& shape, double y) {
-    if (std::holds_alternative<Jenkins>(shape)) return Jenkins{}.Force(y);
-    if (std::holds_alternative<Mindlin>(shape)) return Mindlin{}.Force(y);
-    return TranscendentalShare(shape, y);
+  /// True if a displacement is neither a reversal, nor beyond the branch's end, nor NaN.
+  [[nodiscard]] bool HoldsTo(double displacement) const {
+    const double ahead = course_.direction * displacement;
+    return ahead >= course_.direction * displacement_ && ahead < course_.end;
   }
-  static double TranscendentalShare(const Shape& shape, double y);
-
   [[nodiscard]] double Force(double force_over_slip) const {
     return law_.slip_force * std::clamp(force_over_slip, -1.0, 1.0);
   }
 
   [[nodiscard]] ScaledBranch Open(const Branch& branch, double origin_force) const;
   [[nodiscard]] Shape ShapeOn(const ScaledBranch& branch) const;
-  [[nodiscard]] Entry Enter(double displacement) const;
+  [[nodiscard]] Course Enter(double displacement) const;
   void Turn(double displacement);
   [[nodiscard]] double PeekAcrossBranches(double displacement) const;
 

@@ -47,6 +47,14 @@ struct ScaledBranch {
 
   /// Returns y = rate·|e|.
   [[nodiscard]] double Normalize(double e) const { return rate * std::abs(e); }
+
+  /// Returns t(δ).
+  /// @param shape  φ of the branch: has Force(y), as those of backbone.h
+  template <typename Shape>
+  [[nodiscard]] double ForceAt(double displacement, const Shape& shape) const {
+    const double e = displacement - origin;
+    return force + std::copysign(height * shape.Force(Normalize(e)), e);
+  }
 };
 
 /// Largest |displacement| [m] of a path.
