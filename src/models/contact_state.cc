@@ -2,9 +2,7 @@
 
 #include <cstdint>
 
-#include "mindahl/core/error.h"
 #include "models/madelung.h"
-#include "models/requirements.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {

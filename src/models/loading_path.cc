@@ -7,7 +7,6 @@
 #include "core/extremes.h"
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
-#include "models/requirements.h"
 
 namespace mindahl::models {
 namespace {
@@ -111,6 +110,12 @@ class OpenBranches {
 };
 
 }  // namespace
+
+void RequireWithinReach(std::string_view quantity, double displacement) {
+  if (!(std::abs(displacement) <= kLargestPathDisplacement)) {
+    ThrowInvalid(quantity, displacement, "must be finite and within +-1e100 m");
+  }
+}
 
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,

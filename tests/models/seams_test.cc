@@ -37,7 +37,7 @@ std::vector<double> Around(double centre) {
 }
 
 /// y at the switches of a shape exponent: |w| = 1/4 and w = 1/2 of backbone.h, y = 2 where z is
-/// formed otherwise, y = |w| = 1/2 of src/models/backbone.cc, log u = −11/16, and slip.
+/// formed otherwise, y = |w| = 1/2 of src/models/steady_loop.cc, log u = −11/16, and slip.
 std::vector<double> Switches(double alpha) {
   const double beta = 1 - alpha;
   std::vector<double> switches = {0.5, 1.0, 2.0};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/models/friction_model.h"
@@ -59,6 +60,9 @@ struct ScaledBranch {
 
 /// Largest |displacement| [m] of a path.
 inline constexpr double kLargestPathDisplacement = 1e100;
+
+/// @throws InvalidArgument unless the displacement [m] can be part of a path
+void RequireWithinReach(std::string_view quantity, double displacement);
 
 /// Successive samples on one branch: [begin, end).
 struct BranchRun {
