@@ -11,35 +11,30 @@
 namespace mindahl::models {
 namespace {
 
-/// Holds what a law under load depends on, with derivatives where they are taken along.
-template <typename Real>
-struct LawUnderLoad {
-  Real log_rate;   // ln κ
-  Real remaining;  // β = 1 − α
-
-  /// δc and Tc over μN₀: δc = (N/N₀)^β/(κβ).
-  [[nodiscard]] LoadRim<Real> RimUnder(double load_ratio, double log_load_ratio) const {
-    using std::exp;
-    if (!(load_ratio > 0)) return {Real(0.0), Real(0.0)};
-    return {exp(remaining * log_load_ratio - log_rate) / remaining, Real(load_ratio)};
-  }
-};
-
 /// Runs through a history.
-/// @param at_rest  where the contact is unloaded, with its derivatives
-/// @param keep     takes each sample and its force over μN₀
+/// @param log_rate   ln κ, as all that follows with its derivatives where they are taken along
+/// @param remaining  β = 1 − α
+/// @param at_rest    where the contact is unloaded
+/// @param keep       takes each sample and its force over μN₀
 template <typename Real, typename Share, typename Keep>
-void Follow(const LoadedHistory& history, const LawUnderLoad<Real>& law, const Share& share,
-            const Real& at_rest, Keep keep) {
+void Follow(const LoadedHistory& history, const Real& log_rate, const Real& remaining,
+            const Share& share, const Real& at_rest, Keep keep) {
+  // δc and Tc over μN₀: δc = (N/N₀)^β/(κβ).
+  const auto rim_at = [&](std::size_t i) -> LoadRim<Real> {
+    using std::exp;
+    if (!(history.load_ratio[i] > 0)) return {Real(0.0), Real(0.0)};
+    return {exp(remaining * history.log_load_ratio[i] - log_rate) / remaining,
+            Real(history.load_ratio[i])};
+  };
   const std::size_t first = history.before.empty() ? 0 : history.before.front();
   double load = history.load_ratio[first];
-  LoadRim<Real> rim = law.RimUnder(load, history.log_load_ratio[first]);
+  LoadRim<Real> rim = rim_at(first);
   ZonedContact<Real> contact;
   StartUnloaded(rim, at_rest, contact);
   const auto move = [&](std::size_t i) {
     if (history.load_ratio[i] != load) {
       load = history.load_ratio[i];
-      rim = law.RimUnder(load, history.log_load_ratio[i]);
+      rim = rim_at(i);
     }
     MoveTo(rim, history.displacement[i], share, contact);
   };
@@ -76,14 +71,14 @@ void MakeMonotone(std::span<double> values, bool grows) {
 
 }  // namespace
 
-void MakeLoadedHistory(std::span<const double> displacement, std::span<const double> load_ratio,
-                       std::span<const std::size_t> reversals, InitialState state,
-                       LoadedHistory& history) {
+LoadedHistory MakeLoadedHistory(std::span<const double> displacement,
+                                std::span<const double> load_ratio,
+                                std::span<const std::size_t> reversals, InitialState state) {
   RequireSameSize("displacement", displacement.size(), "load ratio", load_ratio.size());
   if (displacement.empty()) throw InvalidArgument("a history needs at least one sample");
+  LoadedHistory history;
   history.displacement.assign(displacement.begin(), displacement.end());
   history.load_ratio.assign(load_ratio.begin(), load_ratio.end());
-  history.log_load_ratio.clear();
   for (const double ratio : load_ratio) {
     RequireNonNegative("load ratio [-]", ratio);
     history.log_load_ratio.push_back(ratio > 0 ? std::log(ratio) : 0.0);  // 0: lifted off
@@ -95,8 +90,7 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
     MakeMonotone(std::span(history.displacement).subspan(begin, end - begin + 1), grows);
     begin = end;
   }
-  history.before.clear();
-  if (state == InitialState::kVirgin) return;
+  if (state == InitialState::kVirgin) return history;
   const auto [lowest, highest] = std::ranges::minmax_element(displacement);
   const auto low = static_cast<std::size_t>(lowest - displacement.begin());
   const auto high = static_cast<std::size_t>(highest - displacement.begin());
@@ -104,7 +98,7 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
   const bool sets_out_up = displacement[first_end] > displacement.front();
   history.before = sets_out_up ? std::vector{high, low} : std::vector{low, high};
   // From the first sample to where the motion has turned twice and comes by there again.
-  if (reversals.size() < 2) return;
+  if (reversals.size() < 2) return history;
   const std::size_t stroke_end = reversals.size() > 2 ? reversals[2] : displacement.size() - 1;
   for (std::size_t i = 0; i <= stroke_end; ++i) {
     const bool is_back = i > reversals[1] && (sets_out_up ? displacement[i] > displacement.front()
@@ -112,6 +106,7 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
     if (is_back) break;
     history.before.push_back(i);
   }
+  return history;
 }
 
 void EvaluateNormalizedForce(const NormalizedLaw& law, const LoadedHistory& history,
@@ -131,7 +126,7 @@ void EvaluateNormalizedForce(const NormalizedLaw& law, const LoadedHistory& hist
   Tangent at_rest(has_origin ? unloaded : 0.0);
   if (IsEmpty(gradient)) {
     backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-      Follow(history, LawUnderLoad<double>{std::log(law.rate), 1 - law.shape_exponent},
+      Follow(history, std::log(law.rate), 1 - law.shape_exponent,
              ShareOfWidth{shape, law.shape_exponent}, at_rest.value(),
              [&](std::size_t i, double force) { t[i] = force; });
     });
@@ -140,11 +135,11 @@ void EvaluateNormalizedForce(const NormalizedLaw& law, const LoadedHistory& hist
   using Shape = backbone::GeneralShape<double>;
   if (has_origin) at_rest.derivatives()[kUnloaded] = 1.0;
   std::ranges::fill(gradient[kSpring], 0.0);
-  const LawUnderLoad<Tangent> with_derivatives = {
-      {std::log(law.rate), Eigen::Vector3d::Unit(kRate)},
-      {1 - law.shape_exponent, -Eigen::Vector3d::Unit(kShape)}};
-  Follow(history, with_derivatives, ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent},
-         at_rest, [&](std::size_t i, const Tangent& force) {
+  const Tangent log_rate(std::log(law.rate), Eigen::Vector3d::Unit(kRate));
+  const Tangent remaining(1 - law.shape_exponent, -Eigen::Vector3d::Unit(kShape));
+  Follow(history, log_rate, remaining,
+         ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent}, at_rest,
+         [&](std::size_t i, const Tangent& force) {
            t[i] = force.value();
            for (const ResponseParameter by : {kRate, kShape, kUnloaded}) {
              const auto column = static_cast<std::size_t>(by);

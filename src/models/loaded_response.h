@@ -30,9 +30,9 @@ struct LoadedHistory {
 /// @param load_ratio    N/N₀, finite, >= 0; of the same size
 /// @param reversals     as from FindReversals on the same displacements
 /// @throws InvalidArgument where sizes differ, the record is empty or a load ratio is negative
-void MakeLoadedHistory(std::span<const double> displacement, std::span<const double> load_ratio,
-                       std::span<const std::size_t> reversals, InitialState state,
-                       LoadedHistory& history);
+LoadedHistory MakeLoadedHistory(std::span<const double> displacement,
+                                std::span<const double> load_ratio,
+                                std::span<const std::size_t> reversals, InitialState state);
 
 /// Computes the force under a varying load (load_zones.h) over μN₀ and its gradient, for solvers:
 /// σ_ref is that under N₀, and t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only.

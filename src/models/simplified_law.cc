@@ -31,14 +31,11 @@ void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displa
     return;
   }
   RequireSameSize("displacement", displacement.size(), "envelope", envelope.size());
-  double last = 0.0;
-  double present = 0.0;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     RequireNonNegative(fmt::format("amplitude [m] of sample {}", i), envelope[i]);
-    present =
-        SimplifiedDahlStep(law, BackboneForce(law, envelope[i]), present, displacement[i] - last);
-    force[i] = present;
-    last = displacement[i];
+    const double step = displacement[i] - (i > 0 ? displacement[i - 1] : 0.0);
+    const double before = i > 0 ? force[i - 1] : 0.0;
+    force[i] = SimplifiedDahlStep(law, BackboneForce(law, envelope[i]), before, step);
   }
 }
 

@@ -40,10 +40,8 @@ Path PathOf(const Test& test) {
 }
 
 LoadedHistory HistoryOf(const Path& path, InitialState state = InitialState::kVirgin) {
-  LoadedHistory history;
-  MakeLoadedHistory(path.displacement, path.load, loop::FindReversals(path.displacement, 0.0),
-                    state, history);
-  return history;
+  return MakeLoadedHistory(path.displacement, path.load,
+                           loop::FindReversals(path.displacement, 0.0), state);
 }
 
 History Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded = 0.0) {
@@ -181,8 +179,7 @@ TEST(EvaluateNormalizedForceUnderLoad, RefusesWhatTheLawDoesNotModel) {
   EXPECT_THAT(message({.rate = 1.0, .spring_travel = 0.1}), HasSubstr("must be 0"));
   t.pop_back();
   EXPECT_THAT(message({.rate = 1.0}), HasSubstr("response"));
-  LoadedHistory other;
-  EXPECT_THROW(MakeLoadedHistory(History{0, 1}, History{1, -1}, {}, InitialState::kVirgin, other),
+  EXPECT_THROW(MakeLoadedHistory(History{0, 1}, History{1, -1}, {}, InitialState::kVirgin),
                InvalidArgument);
 }
 

@@ -156,8 +156,8 @@ Response::Response(const Problem& problem)
     turns_.push_back(TurnsOf(is_part ? *record.whole : record));
     models::LoadedHistory& history = histories_.emplace_back();
     if (record.load_ratio.empty() || !IsMasing(problem)) continue;
-    models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
-                              problem.initial_state, history);
+    history = models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
+                                        problem.initial_state);
   }
 }
 
