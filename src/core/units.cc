@@ -89,12 +89,11 @@ std::optional<Unit> FindProduct(std::string_view symbol) {
 
 /// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
 std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
-  if (const std::optional<Unit> base_unit = FindUnit(base)) {
-    const std::optional<Unit> unit = FindUnit(symbol);
-    const bool is_of_kind = unit && unit->dimension == base_unit->dimension;
-    return is_of_kind ? std::optional(unit->ToSi(value)) : std::nullopt;
-  }
-  return symbol == base && base != "-" ? std::optional(value) : std::nullopt;
+  const std::optional<Unit> base_unit = FindUnit(base);
+  const std::optional<Unit> unit = FindUnit(symbol);
+  if (base_unit && unit && unit->dimension == base_unit->dimension) return unit->ToSi(value);
+  const bool is_base = !base_unit && symbol == base && base != "-";
+  return is_base ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -143,12 +142,12 @@ std::optional<double> ParseQuantity(std::string_view text, std::string_view unit
   const std::string_view symbol = Trimmed(text.substr(end));
   if (!value || symbol.empty()) return value;
   if (symbol == "%" && unit == "-") return *value / 100;
+  const std::vector<std::string_view> base = PartsOf(unit, '/');
+  if (base.size() == 1) return InBaseOf(*value, symbol, unit);
   const std::size_t slash = symbol.find('/');
-  const std::size_t base_slash = unit.find('/');
-  if (base_slash == std::string_view::npos) return InBaseOf(*value, symbol, unit);
   if (slash == std::string_view::npos) return std::nullopt;
-  const auto over = InBaseOf(*value, Trimmed(symbol.substr(0, slash)), unit.substr(0, base_slash));
-  const auto under = InBaseOf(1.0, Trimmed(symbol.substr(slash + 1)), unit.substr(base_slash + 1));
+  const auto over = InBaseOf(*value, Trimmed(symbol.substr(0, slash)), base[0]);
+  const auto under = InBaseOf(1.0, Trimmed(symbol.substr(slash + 1)), base[1]);
   if (!over || !under) return std::nullopt;
   return *over / *under;
 }

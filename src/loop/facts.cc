@@ -51,7 +51,7 @@ std::vector<std::size_t> TurningPoints(const RecordView& record,
 
 /// Returns the least and greatest mean over a twentieth of the samples: what a stroke's force keeps
 /// to, not its noise.
-std::pair<double, double> MovingMeanRange(Column force) {
+Extremes MovingMeanRange(Column force) {
   const std::size_t width = std::max<std::size_t>(force.size() / 20, 1);
   double sum =
       std::accumulate(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(width), 0.0);
@@ -115,12 +115,10 @@ std::optional<std::array<double, kEdges - 1>> MeansBetween(
   return integrals;
 }
 
-/// The two strokes of a cycle in order of time, with the middle of what both pass.
+/// The two strokes of a cycle in order of time.
 struct Cycle {
   Stroke first;
   Stroke second;
-  double centre = 0.0;  // [m]
-  double reach = 0.0;   // [m] to either side
 
   [[nodiscard]] const Stroke& rising() const { return first.rises() ? first : second; }
   [[nodiscard]] const Stroke& falling() const { return first.rises() ? second : first; }
@@ -132,14 +130,7 @@ Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
     return Stroke{record.displacement.subspan(first, last - first + 1),
                   record.force.subspan(first, last - first + 1)};
   };
-  Cycle cycle{stroke(points[0], points[1]), stroke(points[1], points[2])};
-  const Column up = cycle.rising().displacement;
-  const Column down = cycle.falling().displacement;
-  const double lower = std::max(up.front(), down.back());
-  const double upper = std::min(up.back(), down.front());
-  cycle.centre = lower + (upper - lower) / 2;
-  cycle.reach = (upper - lower) / 2;
-  return cycle;
+  return {stroke(points[0], points[1]), stroke(points[1], points[2])};
 }
 
 /// Means of the forces of the rising and the falling stroke over equal parts of the middle fraction
@@ -148,17 +139,20 @@ Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
 template <std::size_t kParts>
 std::optional<std::array<std::array<double, kParts>, 2>> PartsOf(const Cycle& cycle,
                                                                  double fraction) {
-  const double reach = fraction * cycle.reach;
+  const Column up = cycle.rising().displacement;
+  const Column down = cycle.falling().displacement;
+  const Extremes both = {std::max(up.front(), down.back()), std::min(up.back(), down.front())};
+  const double reach = fraction * both.half_range();
   if (!(reach > 0)) return std::nullopt;
   std::array<double, kParts + 1> edges{};
   for (std::size_t j = 0; j <= kParts; ++j) {
     edges[j] =
-        cycle.centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
+        both.middle() - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
   }
-  const auto up = MeansBetween(cycle.rising().displacement, cycle.rising().force, edges);
-  const auto down = MeansBetween(cycle.falling().displacement, cycle.falling().force, edges);
-  if (!up || !down) return std::nullopt;
-  return {{*up, *down}};
+  const auto rising = MeansBetween(up, cycle.rising().force, edges);
+  const auto falling = MeansBetween(down, cycle.falling().force, edges);
+  if (!rising || !falling) return std::nullopt;
+  return {{*rising, *falling}};
 }
 
 /// Measures the gap between the strokes and, where there is one, how far the contact slides.

@@ -184,10 +184,6 @@ void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double sprin
   }
 }
 
-inline bool IsRigid(const SeriesSpring& rig) {
-  return std::isinf(rig.stiffness) && rig.stiffness > 0;
-}
-
 /// Returns c = Tc/k_r [m], the spring's travel at slip.
 /// @throws InvalidArgument where the rig cannot be accounted for
 inline double SpringTravel(const BranchLaw& law, const SeriesSpring& rig) {

@@ -129,7 +129,7 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
                         double amplitude) {
   Require(law, amplitude);
   Validate(rig);
-  if (IsRigid(rig)) return amplitude;
+  if (std::isinf(rig.stiffness)) return amplitude;
   const double spring_travel = law.slip_force / rig.stiffness;
   const double rate = law.tangential_stiffness / law.slip_force;
   return BranchScaling(model, law, spring_travel).ContactAmplitude(rate * amplitude) / rate;

@@ -25,13 +25,9 @@ class InputError : public std::runtime_error {
 /// @param quantity  name with unit, e.g. "slip force [N]"
 [[noreturn]] void ThrowInvalid(std::string_view quantity, double value, std::string_view rule);
 
-/// @throws InvalidArgument unless `value` is finite.
+/// Each throws InvalidArgument unless `value` is finite and, of the last two, > 0 and >= 0.
 void RequireFinite(std::string_view quantity, double value);
-
-/// @throws InvalidArgument unless `value` is finite and > 0.
 void RequirePositive(std::string_view quantity, double value);
-
-/// @throws InvalidArgument unless `value` is finite and >= 0.
 void RequireNonNegative(std::string_view quantity, double value);
 
 /// @throws InvalidArgument unless the two sizes agree.
