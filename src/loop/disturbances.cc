@@ -20,7 +20,6 @@ namespace {
 /// Returns the distances between neighbours that differ.
 std::vector<double> StepsOf(std::span<const double> values) {
   std::vector<double> steps;
-  steps.reserve(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double step = std::abs(values[i] - values[i - 1]);
     if (step > 0) steps.push_back(step);
@@ -120,7 +119,6 @@ double EncoderStep(std::span<const double> readings, bool rests_at_turns) {
 
 double EstimateDisplacementNoise(std::span<const double> displacement) {
   std::vector<double> anew;  // without repeats
-  anew.reserve(displacement.size());
   std::ranges::unique_copy(displacement, std::back_inserter(anew));
   if (anew.size() < 4) return 0.0;
   return std::max(NoiseByDifferences(anew, 3), EncoderStep(displacement) / std::sqrt(12.0));
@@ -138,10 +136,9 @@ std::vector<std::size_t> SmoothingReaches(std::span<const double> displacement, 
 std::vector<double> Smoothed(std::span<const double> displacement,
                              std::span<const std::size_t> reaches) {
   RequireSameSize("displacement", displacement.size(), "windows", reaches.size());
-  std::vector<double> smoothed;
-  smoothed.reserve(displacement.size());
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    smoothed.push_back(ParabolaAt(displacement, i, reaches[i]));
+  std::vector<double> smoothed(displacement.size());
+  for (std::size_t i = 0; i < smoothed.size(); ++i) {
+    smoothed[i] = ParabolaAt(displacement, i, reaches[i]);
   }
   return smoothed;
 }

@@ -140,8 +140,7 @@ void LeaveOutRests(Part& part) {
   const std::size_t from = part.points.front();
   const std::span<const double> moved =
       part.record.displacement.subspan(from, part.points.back() - from + 1);
-  const Extremes all = ExtremesOf(moved);
-  const double reach = std::max(kRest * (all.greatest / 2 - all.least / 2), part.gate);
+  const double reach = std::max(kRest * ExtremesOf(moved).half_range(), part.gate);
   std::vector<double> lengths;
   for (std::size_t k = 2; k + 1 < part.points.size(); ++k) {
     lengths.push_back(static_cast<double>(part.points[k] - part.points[k - 1]));

@@ -33,9 +33,6 @@ Excitation MakeExcitation(const ExcitationOptions& options) {
   }
   const auto steps = static_cast<std::size_t>(std::llround(samples));
   Excitation excitation;
-  for (auto* column : {&excitation.time, &excitation.displacement, &excitation.envelope}) {
-    column->reserve(steps + 1);
-  }
   for (std::size_t i = 0; i <= steps; ++i) {
     excitation.time.push_back(static_cast<double>(i) / per_cycle / options.frequency);
     const double phase = static_cast<double>(i % options.samples_per_cycle) / per_cycle;

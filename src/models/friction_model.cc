@@ -102,26 +102,15 @@ SteadyPeak DahlPeak(double y, double shape_exponent) {
   return {std::tanh(theta), per_log_amplitude, loop.LogPerBeta(theta) * per_log_amplitude};
 }
 
+using enum Memory;
 constexpr std::array kModels = {
-    FrictionModel{.name = "mindlin-dahl",
-                  .title = "Masing law with free shape exponent (Full-Dahl)",
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "mindlin",
-                  .title = "Mindlin's sphere contact",
-                  .shape_exponent = 1.0 / 3.0,
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "jenkins",
-                  .title = "Jenkins element: spring and Coulomb slider",
-                  .shape_exponent = 0.0,
-                  .scale = MasingScale,
-                  .steady_peak = MasingPeak},
-    FrictionModel{.name = "dahl",
-                  .title = "Dahl's own law",
-                  .memory = Memory::kNone,
-                  .scale = DahlScale,
-                  .steady_peak = DahlPeak},
+    FrictionModel{"mindlin-dahl", "Masing law with free shape exponent (Full-Dahl)", kReturnPoint,
+                  std::nullopt, MasingScale, MasingPeak},
+    FrictionModel{"mindlin", "Mindlin's sphere contact", kReturnPoint, 1.0 / 3.0, MasingScale,
+                  MasingPeak},
+    FrictionModel{"jenkins", "Jenkins element: spring and Coulomb slider", kReturnPoint, 0.0,
+                  MasingScale, MasingPeak},
+    FrictionModel{"dahl", "Dahl's own law", kNone, std::nullopt, DahlScale, DahlPeak},
 };
 
 }  // namespace

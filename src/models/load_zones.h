@@ -35,17 +35,6 @@ struct LoadRim {
   Real slip_force{};         ///< Tc(N) [N]
 };
 
-/// A contact under a load that is moved from step to step.
-template <typename Real>
-struct ZonedContact {
-  /// Cover 0 <= h < δc, innermost first; the elements at the rim carry nothing, so that δ need not
-  /// be kept with them.
-  std::vector<LoadZone<Real>> zones;
-  LoadRim<Real> rim{};
-  double displacement = 0.0;  ///< δ [m]
-  Real force{};               ///< T [N]
-};
-
 /// A number with its derivatives by the first three of ResponseParameter, ln κ, α and δ₀, for
 /// arithmetic that takes them along.
 using Tangent = Eigen::AutoDiffScalar<Eigen::Vector3d>;
@@ -53,6 +42,24 @@ using Tangent = Eigen::AutoDiffScalar<Eigen::Vector3d>;
 /// Returns the number without its derivatives, which alone decides between cases.
 inline double ValueOf(double x) { return x; }
 inline double ValueOf(const Tangent& x) { return x.value(); }
+
+/// A contact under a load that is moved from step to step.
+template <typename Real>
+struct ZonedContact {
+  /// @param at_rest  displacement [m] at which it is unloaded, and where it begins
+  ZonedContact(const LoadRim<Real>& first_rim, const Real& at_rest)
+      : rim(first_rim), displacement(ValueOf(at_rest)) {
+    if (!(ValueOf(rim.slip_displacement) > 0)) return;
+    zones.push_back({Real(0.0), Real(0.0), at_rest, Real(0.0), Real(0.0)});
+  }
+
+  /// Cover 0 <= h < δc, innermost first; the elements at the rim carry nothing, so that δ need not
+  /// be kept with them.
+  std::vector<LoadZone<Real>> zones;
+  LoadRim<Real> rim;
+  double displacement;  ///< δ [m]
+  Real force{0.0};      ///< T [N]
+};
 
 /// Fraction of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
 template <typename Shape>
@@ -72,18 +79,6 @@ struct ShareOfWidth {
     return share;
   }
 };
-
-/// Puts a contact where it is unloaded.
-template <typename Real>
-void StartUnloaded(const LoadRim<Real>& rim, const Real& at_rest, ZonedContact<Real>& contact) {
-  contact.rim = rim;
-  contact.displacement = ValueOf(at_rest);
-  contact.force = Real(0.0);
-  contact.zones.clear();
-  if (ValueOf(rim.slip_displacement) > 0) {
-    contact.zones.push_back({Real(0.0), Real(0.0), at_rest, Real(0.0), Real(0.0)});
-  }
-}
 
 /// The load rises faster than anything can slip: elements come into contact at the rim, each
 /// resting where δ is when it does. On the line of those before it makes no zone of its own.

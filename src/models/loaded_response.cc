@@ -29,8 +29,7 @@ void Follow(const LoadedHistory& history, const Real& log_rate, const Real& rema
   const std::size_t first = history.before.empty() ? 0 : history.before.front();
   double load = history.load_ratio[first];
   LoadRim<Real> rim = rim_at(first);
-  ZonedContact<Real> contact;
-  StartUnloaded(rim, at_rest, contact);
+  ZonedContact<Real> contact(rim, at_rest);
   const auto move = [&](std::size_t i) {
     if (history.load_ratio[i] != load) {
       load = history.load_ratio[i];

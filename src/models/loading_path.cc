@@ -17,14 +17,12 @@ std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  OpenBranches(LoadingPath& path, Memory memory, const InitialContact& initial)
+  /// Opens what is open before the first sample.
+  OpenBranches(std::span<const double> displacement, std::span<const Turn> turns, Memory memory,
+               const InitialContact& initial, LoadingPath& path)
       : path_(path),
         memory_(memory),
-        asymmetry_(initial.state == InitialState::kVirgin ? initial.asymmetry : 0.0) {}
-
-  /// Opens what is open before the first sample.
-  void OpenInitial(std::span<const double> displacement, std::span<const Turn> turns,
-                   const InitialContact& initial) {
+        asymmetry_(initial.state == InitialState::kVirgin ? initial.asymmetry : 0.0) {
     const double first_extreme = turns.empty() ? displacement.back() : turns.front().displacement;
     const double next = turns.size() > 1    ? turns[1].displacement
                         : turns.size() == 1 ? displacement.back()
@@ -152,8 +150,7 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const Turn>
   path.runs.clear();
   path.open.clear();
   path.branches.reserve(turns.size() + 3);  // and those that are open before the first sample
-  OpenBranches open(path, memory, initial);
-  open.OpenInitial(displacement, turns, initial);
+  OpenBranches open(displacement, turns, memory, initial, path);
   std::size_t i = 0;
   const auto run_to = [&](std::size_t end) {
     while (i < end) {

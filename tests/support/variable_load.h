@@ -26,9 +26,8 @@ inline models::BranchLaw ReferenceLaw(const LoadDependentLaw& law) {
 /// A contact that is unloaded at 0 under a first load, and moved step by step.
 class LoadedContact {
  public:
-  LoadedContact(const LoadDependentLaw& law, double normal_load) : law_(law) {
-    models::StartUnloaded(RimUnder(normal_load), 0.0, contact_);
-  }
+  LoadedContact(const LoadDependentLaw& law, double normal_load)
+      : law_(law), contact_(RimUnder(normal_load), 0.0) {}
 
   /// Returns the force [N] at a displacement [m] and a load [N].
   double Move(double displacement, double normal_load) {
