@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 #include "core/extremes.h"
@@ -190,34 +189,21 @@ double UsualStepOf(Readings values) {
   return *at;
 }
 
-/// A column, what is wrong in it, and the column with lines over that; both empty where nothing is.
+/// A column with lines over its glitches.
 struct Repaired {
-  Readings read;
+  std::vector<double> values{};
   std::set<std::size_t> glitches{};
-  std::vector<double> interpolated{};
-  std::optional<double> usual_step{};  // of the column as it was when it was first asked for
 
-  [[nodiscard]] Readings values() const {
-    return interpolated.empty() ? read : Readings(interpolated);
-  }
-  [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
-  double UsualStep() {
-    if (!usual_step) usual_step = UsualStepOf(values());
-    return *usual_step;
-  }
+  [[nodiscard]] double Step(std::size_t i) const { return std::abs(values[i] - values[i - 1]); }
 };
 
 /// Draws a line between the samples about [begin, end), which are inside the record.
 void LeaveOut(std::size_t begin, std::size_t end, Repaired& channel) {
-  if (channel.interpolated.empty()) {
-    channel.interpolated.assign(channel.read.begin(), channel.read.end());
-  }
-  std::vector<double>& values = channel.interpolated;
-  const double first = values[begin - 1];
-  const double slope = (values[end] - first) / static_cast<double>(end - begin + 1);
+  const double first = channel.values[begin - 1];
+  const double slope = (channel.values[end] - first) / static_cast<double>(end - begin + 1);
   for (std::size_t i = begin; i < end; ++i) {
     channel.glitches.insert(i);
-    values[i] = first + slope * static_cast<double>(i - begin + 1);
+    channel.values[i] = first + slope * static_cast<double>(i - begin + 1);
   }
 }
 
@@ -260,7 +246,7 @@ std::vector<Run> FindDropouts(const RecordView& record) {
 /// second spike makes two. 0 with fewer.
 double StepAbout(const Repaired& channel, std::size_t begin, std::size_t end) {
   std::array<double, 3> largest{};
-  const std::size_t last = std::min(end + kAboutSpike, channel.read.size() - 1);
+  const std::size_t last = std::min(end + kAboutSpike, channel.values.size() - 1);
   for (std::size_t i = std::max(begin, kAboutSpike + 1) - kAboutSpike; i <= last; ++i) {
     if (i >= begin && i <= end) continue;
     largest[2] = std::max(largest[2], channel.Step(i));
@@ -270,15 +256,15 @@ double StepAbout(const Repaired& channel, std::size_t begin, std::size_t end) {
 }
 
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(Repaired& channel, std::size_t i) {
-  const Readings values = channel.values();
+std::size_t SpikeAt(const Repaired& channel, double usual_step, std::size_t i) {
+  const Readings values = channel.values;
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
   double least = sense * values[i];
   for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + kLongestSpike; ++end) {
     const double height = least - std::max(before, sense * values[end]);
     if (height > kSpike * channel.Step(end + 1) && height > kSpike * StepAbout(channel, i, end) &&
-        height > kSpike * channel.UsualStep()) {
+        height > kSpike * usual_step) {
       return end - i;
     }
     least = std::min(least, sense * values[end]);
@@ -287,12 +273,12 @@ std::size_t SpikeAt(Repaired& channel, std::size_t i) {
 }
 
 /// Makes one pass: a spike may hide another, until it is interpolated.
-bool FindSpikes(Repaired& channel) {
+bool FindSpikes(Repaired& channel, double usual_step) {
   bool found = false;
-  for (std::size_t i = 2; i + 2 < channel.read.size(); ++i) {
+  for (std::size_t i = 2; i + 2 < channel.values.size(); ++i) {
     // Hardly any step of a clean record exceeds the one before it by this factor.
     if (!(channel.Step(i) > kSpike * channel.Step(i - 1))) continue;
-    const std::size_t samples = SpikeAt(channel, i);
+    const std::size_t samples = SpikeAt(channel, usual_step, i);
     if (samples == 0) continue;
     LeaveOut(i, i + samples, channel);
     found = true;
@@ -305,19 +291,20 @@ bool FindSpikes(Repaired& channel) {
 Interpolated FindAndInterpolate(const RecordView& record) {
   constexpr int kPasses = 3;
   const std::vector<Run> dropouts = FindDropouts(record);
-  const auto interpolated = [&](Readings values) {
-    Repaired channel{.read = values};
+  const auto repaired = [&](Readings values) {
+    Repaired channel{.values = {values.begin(), values.end()}};
     for (const Run& run : dropouts) LeaveOut(run.begin, run.end, channel);
-    for (int pass = 0; pass < kPasses && FindSpikes(channel); ++pass) continue;
+    const double usual_step = UsualStepOf(channel.values);
+    for (int pass = 0; pass < kPasses && FindSpikes(channel, usual_step); ++pass) continue;
     const auto count = static_cast<double>(channel.glitches.size());
-    const double most = kMost * static_cast<double>(values.size());
-    return count > most ? Repaired{.read = values} : channel;
+    const bool is_repaired = count > 0 && count <= kMost * static_cast<double>(values.size());
+    return is_repaired ? channel : Repaired();
   };
-  Repaired displacement = interpolated(record.displacement);
-  Repaired force = interpolated(record.force);
+  Repaired displacement = repaired(record.displacement);
+  Repaired force = repaired(record.force);
   displacement.glitches.merge(force.glitches);
-  return {std::move(displacement.glitches), std::move(displacement.interpolated),
-          std::move(force.interpolated)};
+  return {std::move(displacement.glitches), std::move(displacement.values),
+          std::move(force.values)};
 }
 
 }  // namespace mindahl::loop

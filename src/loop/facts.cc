@@ -22,9 +22,6 @@ using Column = std::span<const double>;
 constexpr double kAtExtreme = 0.02;
 /// [of the widest cycle's amplitude] Least amplitude of a cycle that is one of the widest.
 constexpr double kSteady = 0.95;
-/// [of its width] Farthest that a cycle ends from where it began: then it loses what a closed one
-/// does, but for twice that fraction.
-constexpr double kReturns = 0.05;
 
 /// Returns the reversals, with the record's first and last sample where they lie at an extreme. The
 /// first one is left out if the first cycle does not return to its force: the contact was unloaded.
@@ -124,15 +121,6 @@ struct Cycle {
   [[nodiscard]] const Stroke& falling() const { return first.rises() ? second : first; }
 };
 
-/// @param points  its three turning points
-Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
-  const auto stroke = [&](std::size_t first, std::size_t last) {
-    return Stroke{record.displacement.subspan(first, last - first + 1),
-                  record.force.subspan(first, last - first + 1)};
-  };
-  return {stroke(points[0], points[1]), stroke(points[1], points[2])};
-}
-
 /// Means of the forces of the rising and the falling stroke over equal parts of the middle fraction
 /// of what both pass, from the lowest; empty where two strokes between turns of the force have no
 /// displacement in common.
@@ -177,11 +165,10 @@ void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   }
 }
 
-CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> points,
+CycleFacts MeasureCycle(const RecordView& record, std::size_t begin, std::size_t end,
                         const Cycle& cycle) {
-  const double way = cycle.second.displacement.back() - cycle.first.displacement.front();
   CycleFacts facts;
-  facts.start = points[0];
+  facts.start = begin;
   facts.amplitude = cycle.first.travel() / 4 + cycle.second.travel() / 4;
   const Column one = cycle.first.force;
   const Column other = cycle.second.force;
@@ -190,10 +177,9 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   const auto [least, greatest] = std::minmax({one_least, other_least, one_greatest, other_greatest,
                                               one.back(), (one.front() + other.back()) / 2});
   facts.peak_force = (greatest - least) / 2;
-  facts.energy = CycleEnergy(record, points[0], points[2]);
+  facts.energy = CycleEnergy(record, begin, end);
   const double rectangle = 4 * facts.amplitude * facts.peak_force;
   if (rectangle > 0) facts.energy_ratio = facts.energy / rectangle;
-  facts.returns = std::abs(way) <= kReturns * 2 * facts.amplitude;
   MeasureGap(cycle, facts);
   return facts;
 }
@@ -298,12 +284,16 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
   std::vector<Cycle> cycles;
   const std::vector<std::size_t> points = TurningPoints(record, reversals);
   MeasureStrokes(record, points, facts);
+  const auto stroke = [&](std::size_t begin, std::size_t end) {
+    return Stroke{record.displacement.subspan(begin, end - begin + 1),
+                  record.force.subspan(begin, end - begin + 1)};
+  };
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
-    const auto of_cycle = std::span(points).subspan(k, 3);
-    cycles.push_back(CycleOf(record, of_cycle));
-    CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, of_cycle, cycles.back()));
-    const auto samples =
-        counts.empty() ? counts : counts.subspan(points[k], points[k + 2] - points[k]);
+    const std::size_t begin = points[k];
+    const std::size_t end = points[k + 2];
+    cycles.push_back({stroke(begin, points[k + 1]), stroke(points[k + 1], end)});
+    CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, begin, end, cycles.back()));
+    const auto samples = counts.empty() ? counts : counts.subspan(begin, end - begin);
     cycle.steady = 2 * std::ranges::count(samples, 1) > std::ssize(samples);
   }
   facts.closed = !facts.cycles.empty();

@@ -20,7 +20,6 @@ struct CycleFacts {
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
   bool steady = false;        ///< true if it counts and is within 5 % of the widest that do
-  bool returns = false;       ///< ends where it began, to 5 % of its width
   /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
   /// means over five parts of it. Of a loop that slips it is the slip force.
   std::optional<double> half_gap;
