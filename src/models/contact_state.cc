@@ -20,9 +20,9 @@ void ContactState::Reset() {
   suspended_.clear();
   displacement_ = unloaded_displacement_;
   force_over_slip_ = 0.0;
-  course_ = {.branch =
-                 Open({.origin = unloaded_displacement_, .start = BranchStart::kUnloaded}, 0.0)};
-  shape_ = ShapeOn(course_.branch);
+  course_ = {};
+  course_.branch = Open({.origin = unloaded_displacement_, .start = BranchStart::kUnloaded}, 0.0);
+  course_.shape = ShapeOn(course_.branch);
 }
 
 ScaledBranch ContactState::Open(const Branch& branch, double origin_force) const {
@@ -50,22 +50,23 @@ ContactState::Course ContactState::Enter(double displacement) const {
   Course next{.branch = present,
               .direction = direction,
               .end = direction == 0 ? 0.0 : kLargestPathDisplacement};
-  if (model_->memory == Memory::kNone) return next;
-  const auto branch_of = [&](std::size_t i) -> const ScaledBranch& {
-    return i < suspended_.size() ? suspended_[i] : i < course_.open ? course_.branch : present;
-  };
-  const auto origin_of = [&](std::size_t i) { return branch_of(i).origin; };
-  next.open = StillOpen(course_.open + (reverses ? 1 : 0), origin_of, direction, displacement);
-  next.branch = branch_of(next.open - 1);
-  if (next.open >= 2) {
-    next.end = std::min(next.end, direction * ClosingDisplacement(next.open, origin_of));
+  if (model_->memory == Memory::kReturnPoint) {
+    const auto branch_of = [&](std::size_t i) -> const ScaledBranch& {
+      return i < suspended_.size() ? suspended_[i] : i < course_.open ? course_.branch : present;
+    };
+    const auto origin_of = [&](std::size_t i) { return branch_of(i).origin; };
+    next.open = StillOpen(course_.open + (reverses ? 1 : 0), origin_of, direction, displacement);
+    next.branch = branch_of(next.open - 1);
+    if (next.open >= 2) {
+      next.end = std::min(next.end, direction * ClosingDisplacement(next.open, origin_of));
+    }
   }
+  next.shape = ShapeOn(next.branch);
   return next;
 }
 
 void ContactState::Turn(double displacement) {
   const Course next = Enter(displacement);
-  if (spring_travel_ > 0) shape_ = ShapeOn(next.branch);
   if (next.open > course_.open) {
     suspended_.push_back(course_.branch);
   } else {
@@ -75,8 +76,8 @@ void ContactState::Turn(double displacement) {
 }
 
 double ContactState::PeekAcrossBranches(double displacement) const {
-  const ScaledBranch branch = Enter(displacement).branch;
-  return Force(branch.ForceAt(displacement, spring_travel_ > 0 ? ShapeOn(branch) : shape_));
+  const Course course = Enter(displacement);
+  return Force(course.branch.ForceAt(displacement, course.shape));
 }
 
 double ContactState::Shape::TranscendentalForce(double y) const {
@@ -86,7 +87,8 @@ double ContactState::Shape::TranscendentalForce(double y) const {
 double ContactState::TangentStiffness() const {
   const ScaledBranch& branch = course_.branch;
   const double y = branch.Normalize(displacement_ - branch.origin);
-  const double slope = std::visit([y](const auto& shape) { return shape.Slope(y); }, shape_.kind);
+  const double slope =
+      std::visit([y](const auto& shape) { return shape.Slope(y); }, course_.shape.kind);
   return law_.slip_force * (branch.height * branch.rate * slope);
 }
 

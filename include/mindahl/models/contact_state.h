@@ -23,10 +23,8 @@ struct ContactStateOptions {
 ///   T = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the present branch
 /// as EvaluateForce of response.h, from which it differs in no bit where the compiler fuses no
 /// multiplication with an addition: every change of direction is a reversal. No step size enters;
-/// a step however long is exact for a motion that does not turn within it.
-///
-/// A state is a value. Copies go on by themselves, and an assignment to a state that is there
-/// reuses its memory; Peek tries a displacement without either.
+/// a step however long is exact for a motion that does not turn within it. A state is a value,
+/// whose copies go on by themselves.
 class ContactState {
  public:
   /// Makes the virgin contact: T = 0 at δ₀, nothing to remember.
@@ -41,21 +39,19 @@ class ContactState {
   /// @returns T [N]; |T| <= Tc
   /// @throws InvalidArgument, the state being left as it was, for a displacement that is NaN or out
   ///   of range, and for a branch 1e100 times stiffer than the spring
-  /// Error as of EvaluateForce. Cost: one branch law, in all 1.1 times a sample of EvaluateForce, 2
-  /// times where that is vectorised (bench/contact_state_bench.cc); at a reversal a branch is
-  /// opened too. Memory: 32 bytes an extreme that is remembered, none for Dahl's own law; it grows
-  /// with the nesting alone, and nothing else is allocated.
+  /// Error as of EvaluateForce. Cost: 1.1 times a sample of EvaluateForce, 2 times where that is
+  /// vectorised (bench/contact_state_bench.cc). Memory: 32 bytes an extreme that is remembered.
   double Move(double displacement) {
     if (!HoldsTo(displacement)) Turn(displacement);
     displacement_ = displacement;
-    force_over_slip_ = course_.branch.ForceAt(displacement, shape_);
+    force_over_slip_ = course_.branch.ForceAt(displacement, course_.shape);
     return Force();
   }
 
   /// Returns or throws what Move(δ) would, without moving. Costs as much as Move; but each Peek
   /// that would close n loops examines all n again.
   [[nodiscard]] double Peek(double displacement) const {
-    return HoldsTo(displacement) ? Force(course_.branch.ForceAt(displacement, shape_))
+    return HoldsTo(displacement) ? Force(course_.branch.ForceAt(displacement, course_.shape))
                                  : PeekAcrossBranches(displacement);
   }
 
@@ -97,6 +93,7 @@ class ContactState {
   /// A branch as it is run in one direction.
   struct Course {
     ScaledBranch branch;
+    Shape shape{};
     double direction = 0.0;  // s = ±1; 0 before any motion
     double end = 0.0;        // s times the displacement before which the branch holds
     std::size_t open = 1;    // branches, with this one
@@ -122,7 +119,6 @@ class ContactState {
   double unloaded_displacement_;
   double spring_travel_ = 0.0;  // Tc/k_r [m]; 0 of a rigid rig
   Course course_;
-  Shape shape_;  // on the present branch
   double displacement_ = 0.0;
   double force_over_slip_ = 0.0;
   std::vector<ScaledBranch> suspended_;  // the open branches below the present one, oldest first
