@@ -6,12 +6,8 @@ namespace mindahl::contact {
 
 // Tangential contact of two spheres under a constant normal load (Cattaneo 1938, Mindlin 1949,
 // Mindlin & Deresiewicz 1953). Coulomb's law holds point by point: an annulus c < r < a slips, the
-// disc r < c sticks, and the whole contact slides at the slip force Tc = μN. With δc the
-// displacement there,
-//   virgin      T = Tc·[1 − (1 − δ/δc)^{3/2}]
-//   unloading   T = T* − 2·T₀((δ* − δ)/2)
-//   reloading   T = −T* + 2·T₀((δ* + δ)/2)
-// δ is the relative displacement of distant points, and T the force that the contact returns.
+// disc r < c sticks, and the whole contact slides at the slip force Tc = μN, from δ = δc on. δ is
+// the relative displacement of distant points, and T the force that the contact returns.
 //
 // G* here is a COMPLIANCE [1/Pa], as in Peyret et al. (2017). Many texts write G* for its inverse,
 // an effective shear modulus [Pa]. Steel on steel has G* ≈ 4.2e-11 1/Pa.
@@ -34,7 +30,7 @@ void Validate(const MindlinContact& contact);
 /// Johnson (1985) §7.2; Peyret et al. (2017) eq. 7. A compliance: see above. It leaves out that
 /// shear changes the pressure between dissimilar bodies, an effect that is nil for (1 − 2ν₁)/G₁ =
 /// (1 − 2ν₂)/G₂.
-/// @throws InvalidArgument on a modulus that is not > 0 or a Poisson ratio outside (−1, 0.5]
+/// @throws InvalidArgument as ShearModulus, for either body
 /// Relative error < 2 ε.
 double TangentialCompliance(const Body& body_1, const Body& body_2);
 

@@ -36,8 +36,8 @@ double EffectiveModulus(const Body& body_1, const Body& body_2);
 
 /// Returns the equivalent radius ρ [m] of two spherical surfaces.
 ///   1/ρ = 1/R₁ + 1/R₂
-/// Johnson (1985) §4.2. A plane has an infinite radius, a concave seat a negative one.
-/// @param radius_1, radius_2  [m], not 0, infinite for a plane; 1/R₁ + 1/R₂ > 0
+/// Johnson (1985) §4.2.
+/// @param radius_1, radius_2  [m], as Body::radius
 /// @throws InvalidArgument on a radius that is 0 or not a number, and where the relative curvature
 ///   is not positive: two planes, or a seat no wider than what sits in it
 /// Relative error < 2 ulp, also for R₁ ≈ −R₂: the sum R₁ + R₂ is then exact.

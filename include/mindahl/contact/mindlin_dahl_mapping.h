@@ -13,14 +13,11 @@ namespace mindahl::contact {
 // The Mindlin-Dahl mapping (Peyret, Rosatello, Chevallier & Dion 2017, eq. 21). The virgin curve of
 // Cattaneo and Mindlin solves Dahl's equation dT/dδ = σ(1 − T/Tc)^α with
 //   σ = 8a/G*,   α = 1/3,   Tc = μN,   δc = Tc/(σ(1 − α)) = 3·Tc·G*/(16a).
-// Forward, a contact gives Dahl's parameters; inverse, a fitted σ and Tc and what is known of the
-// contact give the rest.
 
 /// Dahl's exponent α of a Mindlin contact.
 inline constexpr double kMindlinShapeExponent = 1.0 / 3.0;
 
 /// Returns Dahl's parameters of a contact with known radius and compliance: σ = 8a/G*, α = 1/3, Tc.
-/// With a friction coefficient and a normal load, the slip force is GrossSlipForce(μ, N).
 /// @throws InvalidArgument as Validate(MindlinContact)
 models::BranchLaw MapMindlinToDahl(const MindlinContact& contact);
 
@@ -97,22 +94,17 @@ enum class ContactQuantity {
   kStiffnessRatio,
 };
 
-/// Inverts the mapping: from a stiffness and a slip force to a quantity of the contact.
-///
-/// Knowledge may be redundant. What is given directly wins over what follows from other inputs: G*
-/// over the materials, of which E* still comes, and a given a over σG*/8 in ρ and p₀.
-///
-/// The standard error is that of the inputs, to first order (GUM, JCGM 100:2008, eq. 13), each
-/// counted once however many ways it enters: E of a body is in G*, in E* and so in Hertz's a. σ and
+/// Inverts the mapping: from a stiffness and a slip force to a quantity of the contact. What is
+/// given directly wins over what follows from other inputs: G* over the materials, of which E*
+/// still comes, and a given a over σG*/8 in ρ and p₀. The standard error is that of the inputs, to
+/// first order (GUM, JCGM 100:2008, eq. 13), each counted once however many ways it enters. σ and
 /// Tc are exact here: their intervals are mapped end by end.
-///
 /// @param stiffness   σ [N/m], finite, > 0
 /// @param slip_force  Tc [N], finite, > 0
 /// @param known       standard errors finite, >= 0, 0 for a plane's radius
 /// @returns empty where the inputs do not determine it
 /// @throws InvalidArgument naming the parameter, its value and the rule, also for knowledge that is
 ///   invalid but not needed
-/// The first order is symmetric, the truth is not: 10 % of a is +33 % or −27 % of ρ, not ±30 %.
 /// Values are exact to rounding; derivatives are central differences, to 1e-9.
 std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double stiffness,
                                               double slip_force, const KnownContact& known);

@@ -24,7 +24,6 @@ double EncoderStep(std::span<const double> readings, bool rests_at_turns = false
 
 /// Returns how far the windows reach, h samples to either side of each sample, over which a
 /// displacement is smoothed where the motion is smooth.
-///
 /// Each sample becomes the value there of the parabola in the sample number through the 2h + 1
 /// samples about it (Savitzky & Golay 1964), h as large as the motion allows: of growing windows
 /// the intervals x̂ ± 2.5 s of the estimates must have a point in common (Goldenshluger &
@@ -58,7 +57,6 @@ struct Interpolated {
 };
 
 /// Finds the samples that no contact and no drive has made.
-///
 /// - A spike of 1 to 3 samples leaves its neighbours and comes back: it lies beyond both by more
 ///   than three times the steps about it (the third largest of 24) and of the record (of ten steps
 ///   nine are smaller). So corners, turning points of few samples a cycle, and square pulses that
@@ -67,7 +65,6 @@ struct Interpolated {
 ///   than two such steps of the record in either channel; where one does, all inside that read so.
 /// Glitches that make up more than a quarter of a channel are none. In the first and last two
 /// samples no spike is found.
-///
 /// @param record  valid
 /// Cost: linear in the samples.
 Interpolated FindAndInterpolate(const RecordView& record);

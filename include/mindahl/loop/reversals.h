@@ -58,10 +58,8 @@ class ReversalFinder {
 /// Returns the samples at which the direction of displacement reverses.
 ///
 /// A reversal is registered at an extremum once the displacement has retreated from it by more than
-/// `gate`; smaller excursions are noise and make no reversal. With gate = 0 every change of
-/// direction counts. Repeated displacements are no reversal; of a dwell, the first sample is the
-/// extremum. Depends on the displacement alone: done once a record, whatever is fitted to it.
-///
+/// `gate`; with gate = 0 every change of direction counts. Repeated displacements are no reversal;
+/// of a dwell, the first sample is the extremum.
 /// @param displacement  [m], finite, in order of time
 /// @param gate          [m], finite, >= 0
 /// @returns indices into `displacement`, ascending; maxima and minima alternate

@@ -33,10 +33,8 @@ void Validate(const SeriesSpring& rig);
 /// The law's α is used as it stands, also for a model that prescribes one.
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
-/// 10⁶); closed loops leave nothing behind. |T| <= Tc. Cost: one branch
-/// law a sample and a branch; nothing is allocated per sample, 32 bytes per branch, and runs of one
-/// branch have no data-dependent jump. With a spring the same errors, and up to 3 iterations a
-/// sample (bench/response_bench.cc); none for α = 0.
+/// 10⁶); closed loops leave nothing behind. |T| <= Tc. Cost: one branch law a sample and a branch,
+/// and 32 bytes a branch; with a spring up to 3 iterations a sample (bench/response_bench.cc).
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig = {});

@@ -28,15 +28,12 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude);
 
-/// Masing's law (Mindlin's, Full-Dahl) and Dahl's own law (eq. 10) on a steady loop of one
-/// amplitude: they are one curve there, each with a σ and a Tc of its own (docs/theory.md §6).
-
-/// Returns Dahl's own law on whose steady loop between ±amplitude a Masing law runs:
+/// Returns Dahl's own law on whose steady loop between ±amplitude a Masing law runs: there both are
+/// one curve, each with a σ and a Tc of its own (docs/theory.md §6).
 ///   α' = α      σ' = σ·(1 − T*/(2Tc))^α = σ·((1+u)/2)^α      Tc' = 2Tc − T* = Tc·(1+u)
 /// with T* = f(X) and u = 1 − T*/Tc; in gross slip σ' = 2^{−α}·σ and Tc' = Tc, for X = 0, which is
 /// a straight line, σ' = σ and Tc' = 2Tc. Peyret et al. (2017) eq. 20 is eq. 10 of these:
 /// 1 − (T* + sT)/(2Tc) = (1 − T*/(2Tc))·(1 − sT/(2Tc − T*)).
-/// @param masing     any valid law
 /// @param amplitude  X [m] of the contact, without a rig's share (ContactAmplitude), finite, >= 0
 /// @throws InvalidArgument for an invalid law or amplitude, and where 2Tc overflows
 /// Relative error below (2 + α) ε of σ', below 2 ε of Tc'.
@@ -46,8 +43,6 @@ BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude);
 ///   α = α'      σ = σ'·(1 + T*/Tc')^α      Tc = (Tc' + T*)/2
 /// the inverse of DahlEquivalent(). σ is eq. 12's slope after a reversal at T*, where a Masing
 /// branch starts with the virgin stiffness.
-/// @param dahl       any valid law
-/// @param amplitude  as above
 /// @throws InvalidArgument likewise
 /// Relative error below (2 + 16α) ε of σ, below 12 ε of Tc: those of T* (SteadyPeakForce).
 BranchLaw MasingEquivalent(const BranchLaw& dahl, double amplitude);
