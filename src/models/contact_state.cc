@@ -75,11 +75,6 @@ void ContactState::Turn(double displacement) {
   course_ = next;
 }
 
-double ContactState::PeekAcrossBranches(double displacement) const {
-  const Course course = Enter(displacement);
-  return Force(course.branch.ForceAt(displacement, course.shape));
-}
-
 double ContactState::Shape::TranscendentalForce(double y) const {
   return std::visit([y](const auto& shape) { return shape.Force(y); }, kind);
 }

@@ -88,9 +88,8 @@ bool EvaluateNormalizedDisplacement(const FrictionModel& model, const ForcedLaw&
                                     std::span<double> d, const DisplacementGradient& gradient = {});
 
 // The branch law at many displacements at once, for fits: the same arithmetic for every sample,
-// without a jump or a call, so that the compiler makes vectors of it. Built for several
-// instruction sets, of which the widest that the processor has is chosen at the first call; they
-// differ in roundings only.
+// without a jump or a call, so that the compiler makes vectors of it. The widest instruction set
+// that the processor has is chosen at the first call; they differ in roundings only.
 //
 // Errors: φ relative 4 ε, as in backbone.h; derivatives 4 ε of 1 and, next to slip, those of a
 // displacement that is off by ε, which for α < 1/2 bends φ' without bound: they steer a solver.

@@ -29,10 +29,8 @@ struct CycleFacts {
   std::optional<double> sliding_amplitude;
 };
 
-/// Holds what a record shows without any model.
-///
-/// Means are those of the widest steady cycles, whose amplitude is at least 0.95 of the widest
-/// cycle's: never of cycles of different amplitude.
+/// Holds what a record shows without any model. Means are those of the widest steady cycles, whose
+/// amplitude is at least 0.95 of the widest cycle's.
 struct LoopFacts {
   /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
   /// start and to its end count by their length, 0.02 cycles short of one is one.
@@ -73,6 +71,8 @@ bool HasSlipped(const LoopFacts& facts);
 
 /// Returns ∮ T dδ [J] from one sample to a later one, trapezoidal, closed by a chord.
 /// @throws InvalidArgument when it overflows
+/// Where long double has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
+/// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the n samples.
 double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last);
 
 /// @param record       with the force of either sign
@@ -82,9 +82,7 @@ double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last
 /// @param counts       one per sample: 1 where it counts; empty: all do. A cycle most of which does
 ///                     not is not steady, unless there is no other
 /// @throws InvalidArgument when the record is empty or inconsistent, or an energy overflows
-/// Energies are ∮ T dδ by the trapezoidal rule. Summed in long double: where it has 64 bits the
-/// error is below 1 ε of the result plus n·2⁻⁶² of Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the
-/// first of the cycle's n samples. Cost: linear in the samples.
+/// Cost: linear in the samples.
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
                        int force_sense, std::span<const unsigned char> counts = {});
 

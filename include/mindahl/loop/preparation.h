@@ -121,9 +121,9 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Generates 20 to 200 synthetic realisations of the displacement readings (noise, encoder phase),
-/// to propagate their errors through a fit: that of a turning point goes along with the whole
-/// branch that starts there, which no variance of a sample represents.
+/// Generates 20 to 200 synthetic realisations of the displacement readings (noise, encoder phase):
+/// the error of a turning point goes along with the whole branch that starts there, which no
+/// variance of a sample represents.
 /// @returns the same every time; null where all displacements are exact
 std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records);
 
@@ -131,8 +131,7 @@ std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records
 /// @throws InvalidArgument naming the option, its value and the rule
 void Validate(const PreparationOptions& options);
 
-/// Finds what depends on no model: glitches, which do not count and make no history, reversals,
-/// facts, sign of force, smoothing and the mask of samples that count.
+/// Finds what depends on no model.
 /// @param records  not empty; their memory must outlive the result
 /// @throws InvalidArgument as Validate(), for records that break a rule, where a record has no load
 ///   for a window, has no cycle or sample of those asked for, or nothing is left of one

@@ -44,15 +44,15 @@ class ContactState {
   double Move(double displacement) {
     if (!HoldsTo(displacement)) Turn(displacement);
     displacement_ = displacement;
-    force_over_slip_ = course_.branch.ForceAt(displacement, course_.shape);
+    force_over_slip_ = course_.ForceAt(displacement);
     return Force();
   }
 
   /// Returns or throws what Move(δ) would, without moving. Costs as much as Move; but each Peek
   /// that would close n loops examines all n again.
   [[nodiscard]] double Peek(double displacement) const {
-    return HoldsTo(displacement) ? Force(course_.branch.ForceAt(displacement, course_.shape))
-                                 : PeekAcrossBranches(displacement);
+    if (HoldsTo(displacement)) return Force(course_.ForceAt(displacement));
+    return Force(Enter(displacement).ForceAt(displacement));
   }
 
   /// Returns T [N] at the present displacement.
@@ -97,6 +97,10 @@ class ContactState {
     double direction = 0.0;  // s = ±1; 0 before any motion
     double end = 0.0;        // s times the displacement before which the branch holds
     std::size_t open = 1;    // branches, with this one
+
+    [[nodiscard]] double ForceAt(double displacement) const {
+      return branch.ForceAt(displacement, shape);
+    }
   };
 
   /// True if a displacement is neither a reversal, nor beyond the branch's end, nor NaN.
@@ -112,7 +116,6 @@ class ContactState {
   [[nodiscard]] Shape ShapeOn(const ScaledBranch& branch) const;
   [[nodiscard]] Course Enter(double displacement) const;
   void Turn(double displacement);
-  [[nodiscard]] double PeekAcrossBranches(double displacement) const;
 
   const FrictionModel* model_;
   BranchLaw law_;

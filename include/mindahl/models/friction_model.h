@@ -30,9 +30,8 @@ struct SteadyPeak {
   double per_shape = 0.0;          ///< ∂t*/∂α
 };
 
-/// A friction model: how a branch of the one law starts. Everything else - evaluation along a
-/// history, derivatives, steady states, energy, fitting, the command line - follows from these few
-/// entries, so a new model is one row of the table in friction_model.cc.
+/// A friction model: how a branch of the one law starts. All else follows from these few entries,
+/// so that a new model is one row of the table in friction_model.cc.
 struct FrictionModel {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< in reports

@@ -71,11 +71,9 @@ struct BranchRun {
   std::int32_t branch = 0;
 };
 
-/// Holds on which branch each sample of a record lies, and from which branch each branch starts.
-///
-/// It follows from the displacements alone, never from σ, α or Tc (docs/theory.md §5): it is found
-/// once a record, and evaluating a model is then one branch law a sample. A parent always precedes
-/// its branches, so origin forces are found in one pass.
+/// Holds on which branch each sample of a record lies, and from which branch each branch starts. It
+/// follows from the displacements alone, never from σ, α or Tc (docs/theory.md §5): it is found
+/// once a record. A parent always precedes its branches, so origin forces are found in one pass.
 struct LoadingPath {
   std::vector<Branch> branches;
   std::vector<BranchRun> runs;     ///< contiguous, of all samples in order
@@ -113,10 +111,8 @@ struct InitialContact {
 /// - kNone: every reversal opens a branch from the last one.
 /// Where the slip forces differ, the virgin curve is one branch in either direction, both of which
 /// are there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as
-/// far on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the travel
-/// from `unloaded_displacement` to the first sample is the first loading step. With a steady one
-/// the record is taken to go on from a loop between its own extremes.
-///
+/// far on the other side where x > 0, else (1 + a)/(1 − a) times. The record goes on from a loop
+/// between its own extremes where the contact is steady.
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
 ///                      step back within the gate
