@@ -93,7 +93,7 @@ class BranchFollower {
  public:
   BranchFollower(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                  const Resolution& resolution)
-      : scaling_(model, law),
+      : scaling_(model, models::Normalized(law)),
         path_(path),
         shape_exponent_(law.shape_exponent),
         resolution_(resolution) {
@@ -196,7 +196,8 @@ Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
   const TableShape shape(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
     const LoadingPath path = PathOf(model, drive);
-    models::EvaluatePath(model, law, 0.0, shape, path, drive.displacement, force);
+    models::EvaluatePath(model, models::Normalized(law), shape, law.slip_force, path,
+                         drive.displacement, force);
     return CostOf(path, force.size(), kLookUp);
   };
 }

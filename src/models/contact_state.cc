@@ -9,10 +9,12 @@ namespace mindahl::models {
 
 ContactState::ContactState(const FrictionModel& model, const BranchLaw& law,
                            const ContactStateOptions& options)
-    : model_(&model), law_(law), unloaded_displacement_(options.unloaded_displacement) {
+    : model_(&model),
+      law_(law),
+      unloaded_displacement_(options.unloaded_displacement),
+      rig_(options.rig) {
   Validate(law);
   RequireWithinReach("unloaded displacement [m]", unloaded_displacement_);
-  spring_travel_ = SpringTravel(law, options.rig);
   Reset();
 }
 
@@ -26,15 +28,15 @@ void ContactState::Reset() {
 }
 
 ScaledBranch ContactState::Open(const Branch& branch, double origin_force) const {
-  return BranchScaling(*model_, law_, spring_travel_).Start(branch, origin_force);
+  return BranchScaling(*model_, Normalized(law_, rig_)).Start(branch, origin_force);
 }
 
 ContactState::Shape ContactState::ShapeOn(const ScaledBranch& branch) const {
-  if (spring_travel_ > 0) {
-    return {models::ShapeOn(SprungShape{law_.shape_exponent, spring_travel_}, branch)};
-  }
-  return backbone::WithShape(law_.shape_exponent,
-                             [](const auto& contact) -> Shape { return {contact}; });
+  Shape on_branch;
+  WithShapeBehindSpring(Normalized(law_, rig_), [&](const auto& shape) {
+    on_branch.kind = models::ShapeOn(shape, branch);
+  });
+  return on_branch;
 }
 
 ContactState::Course ContactState::Enter(double displacement) const {

@@ -49,7 +49,7 @@ Gradient DifferentiateSample(const backbone::InSeries& shape, const ScaledBranch
 
 /// Returns the derivatives of every branch of `scaled`, which ScaleBranches made.
 std::vector<BranchGradient> DifferentiateBranches(const BranchScaling& scaling,
-                                                  const LoadingPath& path, const SprungShape& shape,
+                                                  const LoadingPath& path, const NormalizedLaw& law,
                                                   const ScaledBranches& scaled) {
   std::vector<BranchGradient> gradients;
   gradients.reserve(path.branches.size());
@@ -59,7 +59,7 @@ std::vector<BranchGradient> DifferentiateBranches(const BranchScaling& scaling,
     if (branch.start == BranchStart::kReversal) {
       const auto parent = static_cast<std::size_t>(branch.parent);
       double force = 0.0;
-      result.force = DifferentiateSample(ShapeOn(shape, scaled[parent]), scaled[parent],
+      result.force = DifferentiateSample(ShapeOn(law, scaled[parent]), scaled[parent],
                                          gradients[parent], branch.origin, force);
     } else if (branch.start == BranchStart::kSteadyCentre) {
       result.force[kAsymmetry] = 1.0;
@@ -74,7 +74,7 @@ std::vector<BranchGradient> DifferentiateBranches(const BranchScaling& scaling,
     // The force at the origin changes the height and the rate of the branch.
     const Gradient remaining = scale.remaining_per_force * branch.direction * result.force;
     result.height += scale.span * remaining;
-    result.log_rate += (shape.shape_exponent - 1) * remaining / scale.remaining;
+    result.log_rate += (law.shape_exponent - 1) * remaining / scale.remaining;
     result.log_rate[kShape] += std::log(scale.remaining);
     if (branch.start != BranchStart::kUnloaded) continue;
     result.origin_per_unloaded = 1.0;
@@ -185,23 +185,18 @@ Point PointOn(const ForcedBranch& branch, const ForcedLaw& law, double force, bo
 void EvaluateNormalizedForce(const FrictionModel& model, const NormalizedLaw& law,
                              const LoadingPath& path, std::span<const double> displacement,
                              std::span<double> t, const NormalizedGradient& gradient) {
-  // Forces are over Tc.
-  const BranchLaw branch_law = {
-      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
-  Validate(branch_law);
+  Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
   RequireSizes(path, displacement, "response", t);
   if (IsEmpty(gradient)) {
-    WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
-      EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t);
+    WithShapeBehindSpring(law, [&](const auto& shape) {
+      EvaluatePath(model, law, OfMany(shape), 1.0, path, displacement, t);
     });
     return;
   }
-  const BranchScaling scaling(model, branch_law, law.spring_travel);
+  const BranchScaling scaling(model, law);
   const double limit = path.limit();
-  const SprungShape shape{law.shape_exponent, law.spring_travel};
-  const ScaledBranches branches = ScaleBranches(scaling, path, shape);
-  const std::vector<BranchGradient> gradients =
-      DifferentiateBranches(scaling, path, shape, branches);
+  const ScaledBranches branches = ScaleBranches(scaling, path, law);
+  const std::vector<BranchGradient> gradients = DifferentiateBranches(scaling, path, law, branches);
   const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
   if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);
   for (const BranchRun& run : path.runs) {
@@ -216,8 +211,8 @@ void EvaluateNormalizedForce(const FrictionModel& model, const NormalizedLaw& la
       DifferentiateGeneralRun(branches[b], gradients[b], law.shape_exponent, limit, places, part(t),
                               of_run);
     } else {
-      DifferentiateRun(ShapeOn(shape, branches[b]), branches[b], gradients[b], limit, places,
-                       part(t), of_run);
+      DifferentiateRun(ShapeOn(law, branches[b]), branches[b], gradients[b], limit, places, part(t),
+                       of_run);
     }
   }
 }

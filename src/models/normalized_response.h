@@ -12,13 +12,6 @@
 
 namespace mindahl::models {
 
-/// Holds the parameters on which T/Tc depends: the force itself is linear in Tc.
-struct NormalizedLaw {
-  double rate = 0.0;                  ///< κ = σ/Tc [1/m], finite, > 0
-  double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0
-  double spring_travel = 0.0;         ///< c = Tc/k_r [m] of a spring in series; 0 without one
-};
-
 /// Numbers the parameters on which t = T/Tc depends: ln κ, α, δ₀, ln c, and the asymmetry a of slip
 /// forces Tc(1 ± a).
 enum ResponseParameter : int { kRate, kShape, kUnloaded, kSpring, kAsymmetry, kParameters };

@@ -16,9 +16,9 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
                    const SeriesSpring& rig) {
   Validate(law);
   RequireSizes(path, displacement, "force", force);
-  const double travel = SpringTravel(law, rig);
-  WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
-    EvaluatePath(model, law, travel, shape, path, displacement, force);
+  const NormalizedLaw normalized = Normalized(law, rig);
+  WithShapeBehindSpring(normalized, [&](const auto& shape) {
+    EvaluatePath(model, normalized, shape, law.slip_force, path, displacement, force);
   });
 }
 

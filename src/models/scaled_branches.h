@@ -17,6 +17,27 @@
 
 namespace mindahl::models {
 
+/// Holds the parameters on which T/Tc depends: the force itself is linear in Tc.
+struct NormalizedLaw {
+  double rate = 0.0;                  ///< κ = σ/Tc [1/m], finite, > 0
+  double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0
+  double spring_travel = 0.0;         ///< c = Tc/k_r [m] of a spring in series; 0 without one
+};
+
+/// Returns a law over its slip force.
+/// @throws InvalidArgument where the rig cannot be accounted for
+inline NormalizedLaw Normalized(const BranchLaw& law, const SeriesSpring& rig = {}) {
+  Validate(rig);
+  // Compared before it is divided by, for no quotient to overflow.
+  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance;
+  if (rig.stiffness < kSoftest * law.tangential_stiffness) {
+    ThrowInvalid("series stiffness [N/m]", rig.stiffness,
+                 "must be >= 1e-100 of the tangential stiffness");
+  }
+  return {law.tangential_stiffness / law.slip_force, law.shape_exponent,
+          law.slip_force / rig.stiffness};
+}
+
 using ScaledBranches = std::vector<ScaledBranch>;
 
 /// φ on a branch. A shape is the same on all of them, ...
@@ -25,44 +46,35 @@ const Shape& ShapeOn(const Shape& shape, const ScaledBranch& /*branch*/) {
   return shape;  // NOLINT(bugprone-return-const-ref-from-parameter): lives as long as the shape
 }
 
-/// ... but in series with a spring each has its own stiffness in proportion to the spring's.
-struct SprungShape {
-  double shape_exponent;
-  double spring_travel;  // c = Tc/k_r [m] of the spring at slip; 0 without one
-};
-
-/// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
+/// ... but in series with a spring each has its own stiffness in proportion to the spring's, κ =
+/// h·k·c: spring and contact together travel Y = y + κφ(y), in units of 1/k.
 /// @throws InvalidArgument where the branch is too stiff for the spring
-inline backbone::InSeries ShapeOn(const SprungShape& shape, const ScaledBranch& branch) {
-  const double compliance = branch.height * branch.rate * shape.spring_travel;
+inline backbone::InSeries ShapeOn(const NormalizedLaw& law, const ScaledBranch& branch) {
+  const double compliance = branch.height * branch.rate * law.spring_travel;
   if (!(compliance <= backbone::kLargestSeriesCompliance)) {
     ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
                  "must be <= 1e100");
   }
-  return {shape.shape_exponent, compliance};
+  return {law.shape_exponent, compliance};
 }
 
-/// Calls use(shape) with the cheapest shape that is exact for α, behind a spring if there is one.
-/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+/// Calls use(shape), of which ShapeOn() makes that of a branch, with the cheapest that is exact for
+/// α, or with the law where a spring is in series.
 template <typename Use>
-void WithShapeBehindSpring(double shape_exponent, double spring_travel, const Use& use) {
-  if (spring_travel == 0) {
-    backbone::WithShape(shape_exponent, use);
+void WithShapeBehindSpring(const NormalizedLaw& law, const Use& use) {
+  if (law.spring_travel == 0) {
+    backbone::WithShape(law.shape_exponent, use);
   } else {
-    use(SprungShape{shape_exponent, spring_travel});
+    use(law);
   }
 }
 
 /// A model's rules for how branches start, at σ/Tc and α of a law, behind a spring or none.
 class BranchScaling {
  public:
-  /// @param model          must outlive the object
-  /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
-  BranchScaling(const FrictionModel& model, const BranchLaw& law, double spring_travel = 0.0)
-      : model_(model),
-        rate_(law.tangential_stiffness / law.slip_force),
-        shape_exponent_(law.shape_exponent),
-        series_compliance_(rate_ * spring_travel) {}
+  /// @param model  must outlive the object
+  BranchScaling(const FrictionModel& model, const NormalizedLaw& law)
+      : model_(model), law_(law), series_compliance_(law.rate * law.spring_travel) {}
 
   /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
   /// left side is increasing and concave, so that Newton's rule rises to the root from below.
@@ -72,7 +84,7 @@ class BranchScaling {
     constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
     double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
     for (int i = 0; i < kIterations && y > 0; ++i) {
-      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
+      const SteadyPeak peak = model_.steady_peak(y, law_.shape_exponent);
       const double residual = (total - y) - series_compliance_ * peak.force;
       if (residual <= kRounding * total) break;
       y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
@@ -87,8 +99,8 @@ class BranchScaling {
     double per_log_spring_travel = 0.0;  // ∂t*/∂ln c
   };
   [[nodiscard]] PeakInSeries Peak(double amplitude) const {
-    const double y = ContactAmplitude(rate_ * amplitude);
-    const SteadyPeak contact = model_.steady_peak(y, shape_exponent_);
+    const double y = ContactAmplitude(law_.rate * amplitude);
+    const SteadyPeak contact = model_.steady_peak(y, law_.shape_exponent);
     if (series_compliance_ == 0) return {contact};
     const double yielding =
         y > 0 ? series_compliance_ * (contact.per_log_stiffness / y) : series_compliance_;
@@ -105,8 +117,9 @@ class BranchScaling {
   [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
                                    double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force);
-    double rate = scale.remaining <= 0 ? 0.0 : rate_ / scale.span;
-    if (rate != 0 && scale.remaining != 1) rate *= std::pow(scale.remaining, shape_exponent_ - 1);
+    double rate = scale.remaining <= 0 ? 0.0 : law_.rate / scale.span;
+    if (rate != 0 && scale.remaining != 1)
+      rate *= std::pow(scale.remaining, law_.shape_exponent - 1);
     return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate / limit};
   }
 
@@ -126,12 +139,11 @@ class BranchScaling {
 
  private:
   const FrictionModel& model_;
-  double rate_;
-  double shape_exponent_;
+  NormalizedLaw law_;
   double series_compliance_;  // κ of the virgin curve
 };
 
-/// @param shape  φ, as in backbone.h: has Force(y); or a SprungShape of it
+/// @param shape  φ, as in backbone.h: has Force(y); or the law in series with a spring
 template <typename Shape>
 ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
                              const Shape& shape) {
@@ -168,33 +180,19 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
 }
 
 /// Computes the forces [N] along a path.
-/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+/// @param shape  as WithShapeBehindSpring() has it
 template <typename Shape>
-void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double spring_travel,
-                  const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
+void EvaluatePath(const FrictionModel& model, const NormalizedLaw& law, const Shape& shape,
+                  double slip_force, const LoadingPath& path, std::span<const double> displacement,
                   std::span<double> force) {
-  const ScaledBranches branches =
-      ScaleBranches(BranchScaling(model, law, spring_travel), path, shape);
+  const ScaledBranches branches = ScaleBranches(BranchScaling(model, law), path, shape);
   const double limit = path.limit();
   for (const BranchRun& run : path.runs) {
     const std::size_t count = run.end - run.begin;
     const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
+    EvaluateRun(branch, ShapeOn(shape, branch), slip_force, limit,
                 displacement.subspan(run.begin, count), force.subspan(run.begin, count));
   }
-}
-
-/// Returns c = Tc/k_r [m], the spring's travel at slip.
-/// @throws InvalidArgument where the rig cannot be accounted for
-inline double SpringTravel(const BranchLaw& law, const SeriesSpring& rig) {
-  Validate(rig);
-  // Compared before it is divided by, for no quotient to overflow.
-  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance;
-  if (rig.stiffness < kSoftest * law.tangential_stiffness) {
-    ThrowInvalid("series stiffness [N/m]", rig.stiffness,
-                 "must be >= 1e-100 of the tangential stiffness");
-  }
-  return law.slip_force / rig.stiffness;
 }
 
 }  // namespace mindahl::models

@@ -103,7 +103,7 @@ BranchLaw Made(long double stiffness, double shape_exponent, long double slip_fo
 
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   Require(law, amplitude);
-  return law.slip_force * BranchScaling(model, law).Peak(amplitude).peak.force;
+  return law.slip_force * BranchScaling(model, Normalized(law)).Peak(amplitude).peak.force;
 }
 
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude) {
@@ -111,7 +111,7 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
   const auto y = backbone::Normalize(law.tangential_stiffness, amplitude, law.slip_force);
   const long double unit =
       static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
-  const double peak = BranchScaling(model, law).Peak(amplitude).peak.force;
+  const double peak = BranchScaling(model, Normalized(law)).Peak(amplitude).peak.force;
   const BranchScale scale = model.scale(-peak, /*virgin=*/false);
   // A branch runs from −t* to t* = −t* + h·φ(2ky), so W = 2[∫ branch − 2y·t*] is a Masing loop's
   // energy in other units, (h/4k)·[8∫₀^{2ky} φ − 4·(2ky)·φ(2ky)]: one form, free of cancellation.
@@ -130,9 +130,9 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
   Require(law, amplitude);
   Validate(rig);
   if (std::isinf(rig.stiffness)) return amplitude;
-  const double spring_travel = law.slip_force / rig.stiffness;
   const double rate = law.tangential_stiffness / law.slip_force;
-  return BranchScaling(model, law, spring_travel).ContactAmplitude(rate * amplitude) / rate;
+  const NormalizedLaw in_series{rate, law.shape_exponent, law.slip_force / rig.stiffness};
+  return BranchScaling(model, in_series).ContactAmplitude(rate * amplitude) / rate;
 }
 
 BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude) {

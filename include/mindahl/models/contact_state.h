@@ -120,7 +120,7 @@ class ContactState {
   const FrictionModel* model_;
   BranchLaw law_;
   double unloaded_displacement_;
-  double spring_travel_ = 0.0;  // Tc/k_r [m]; 0 of a rigid rig
+  SeriesSpring rig_;
   Course course_;
   double displacement_ = 0.0;
   double force_over_slip_ = 0.0;
