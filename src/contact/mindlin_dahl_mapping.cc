@@ -102,7 +102,7 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
                               const KnownContact& known) {
   const std::optional<double> compliance = TangentialCompliance(known);
   const double fitted_radius = compliance ? 0.125 * stiffness * *compliance : 0.0;
-  const double radius = known.contact_radius ? known.contact_radius->value : fitted_radius;
+  const double radius = known.contact_radius.value_or(fitted_radius);
   const bool has_pressure = known.normal_load && radius > 0;
   switch (quantity) {
     case ContactQuantity::kFrictionCoefficient:
@@ -220,16 +220,16 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
   double smallest_radius = std::numeric_limits<double>::infinity();
   for (const auto& [body, number] : {std::pair{&known.body_1, 1}, std::pair{&known.body_2, 2}}) {
     if (body->radius) smallest_radius = std::min(smallest_radius, std::abs(body->radius->value));
-    const double modulus = body->youngs_modulus ? body->youngs_modulus->value : kSoftestModulus;
+    const double modulus = body->youngs_modulus.value_or(kSoftestModulus);
     const bool is_soft = modulus < kSoftestModulus;
     if (!is_soft && !(modulus > kStiffestModulus)) continue;
     doubts.push_back(fmt::format(
         "Young's modulus of body {} = {:.4g} Pa is {}: give it in Pa, as 210e9", number, modulus,
         is_soft ? "below 1 MPa, softer than rubber" : "above 2 TPa, stiffer than diamond"));
   }
-  std::array<double, 3> radii = {0.0, fitted_radius.value_or(0.0), 0.0};
-  if (known.contact_radius) radii[0] = known.contact_radius->value;
-  if (KnowsHertz(known)) radii[2] = HertzRadiusOf(known);
+  const std::array<double, 3> radii = {known.contact_radius.value_or(0.0),
+                                       fitted_radius.value_or(0.0),
+                                       KnowsHertz(known) ? HertzRadiusOf(known) : 0.0};
   const auto* const large = std::ranges::find_if(
       radii, [&](double radius) { return radius > kLargestRadiusShare * smallest_radius; });
   if (large != radii.end()) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -13,13 +14,6 @@ namespace {
 
 /// A general shape whose runs the kernel evaluates.
 struct KernelShape : backbone::GeneralShape<double> {};
-
-/// Returns the shape that is fastest for many displacements.
-template <typename Shape>
-Shape OfMany(const Shape& shape) {
-  return shape;
-}
-KernelShape OfMany(const backbone::GeneralShape<double>& shape) { return {shape}; }
 
 void EvaluateRun(const ScaledBranch& branch, const KernelShape& shape, double /*slip_force*/,
                  double limit, std::span<const double> displacement, std::span<double> t) {
@@ -188,8 +182,10 @@ void EvaluateNormalizedForce(const FrictionModel& model, const NormalizedLaw& la
   Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
   RequireSizes(path, displacement, "response", t);
   if (IsEmpty(gradient)) {
-    WithShapeBehindSpring(law, [&](const auto& shape) {
-      EvaluatePath(model, law, OfMany(shape), 1.0, path, displacement, t);
+    WithShapeBehindSpring(law, [&]<typename Shape>(const Shape& shape) {
+      constexpr bool kHasKernel = std::is_same_v<Shape, backbone::GeneralShape<double>>;
+      using Fastest = std::conditional_t<kHasKernel, KernelShape, Shape>;
+      EvaluatePath(model, law, Fastest{shape}, 1.0, path, displacement, t);
     });
     return;
   }

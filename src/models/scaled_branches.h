@@ -118,8 +118,9 @@ class BranchScaling {
                                    double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force);
     double rate = scale.remaining <= 0 ? 0.0 : law_.rate / scale.span;
-    if (rate != 0 && scale.remaining != 1)
+    if (rate != 0 && scale.remaining != 1) {
       rate *= std::pow(scale.remaining, law_.shape_exponent - 1);
+    }
     return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate / limit};
   }
 

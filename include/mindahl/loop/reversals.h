@@ -28,11 +28,7 @@ class ReversalFinder {
       return std::nullopt;
     }
     const double along = sense_ * displacement;
-    if (along > extreme_) {
-      extreme_ = along;
-      place_ = i;
-      return std::nullopt;
-    }
+    if (along > extreme_) Go(sense_, i, displacement);
     if (!(extreme_ - along > gate_)) return std::nullopt;
     const std::size_t turn = place_;
     Go(-sense_, i, displacement);

@@ -198,10 +198,9 @@ struct SeriesDerivatives {
 /// linear in φ and in y, with a slope that varies by less than twofold. Tangents at the ends of
 /// either part start an iteration of third order, whose steps take the sum of the two decays for
 /// one decay: exact for κ → 0, for κ → ∞ and for α = 0.
-///
-/// For 0 <= κ <= kLargestSeriesCompliance and Y >= 0; Φ has a relative
-/// error below 4 ε. At most 3 iterations, found over 3e7 points; each is two or three
-/// transcendentals. Without a spring, κ = 0, and for α = 0 there is none.
+/// For 0 <= κ <= kLargestSeriesCompliance and Y >= 0; Φ has a relative error below 4 ε. At most 3
+/// iterations, found over 3e7 points, each of two or three transcendentals; none for κ = 0 or α =
+/// 0.
 class InSeries {
  public:
   InSeries(double shape_exponent, double compliance)
