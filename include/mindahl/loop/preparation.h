@@ -48,10 +48,9 @@ struct PreparationOptions {
   std::optional<int> force_sense{};
 
   /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
-  /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. Under
-  /// an imposed force it makes no gate, and the displacement is not smoothed. A
-  /// noisy displacement is smoothed (SmoothingReaches), since noise in the argument of a curved
-  /// law is a bias.
+  /// record shows it by its gate or by an encoder's steps of 2e-4 of its half range, else 0. A
+  /// noisy displacement is smoothed (SmoothingReaches), since noise in the argument of a curved law
+  /// is a bias; under an imposed force it is not.
   std::optional<double> displacement_noise{};
 
   /// The first sample of each record is a turning point, as of a cycle that was cut out.
