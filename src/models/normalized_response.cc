@@ -58,10 +58,10 @@ std::vector<BranchGradient> DifferentiateBranches(const BranchScaling& scaling,
     } else if (branch.start == BranchStart::kSteadyCentre) {
       result.force[kAsymmetry] = 1.0;
     } else if (branch.start == BranchStart::kSteadyExtreme) {
-      const auto [peak, per_log_spring_travel] = scaling.Peak(branch.amplitude);
+      const SteadyPeak peak = scaling.Peak(branch.amplitude);
       result.force[kRate] = -branch.direction * peak.per_log_stiffness;
       result.force[kShape] = -branch.direction * peak.per_shape;
-      result.force[kSpring] = -branch.direction * per_log_spring_travel;
+      result.force[kSpring] = -branch.direction * peak.per_log_travel;
     }
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) continue;

@@ -93,20 +93,15 @@ class BranchScaling {
   }
 
   /// Peak at the amplitude of spring and contact together, by the implicit function theorem:
-  ///   y + κ·t*(y) = Y   ⇒   dt*/dY = t*'/(1 + κt*')
-  struct PeakInSeries {
-    SteadyPeak peak;                     // ∂/∂ln σ at a given c
-    double per_log_spring_travel = 0.0;  // ∂t*/∂ln c
-  };
-  [[nodiscard]] PeakInSeries Peak(double amplitude) const {
+  ///   y + κ·t*(y) = Y   ⇒   dt*/dY = t*'/(1 + κt*'),   its stiffness being σ at a given c
+  [[nodiscard]] SteadyPeak Peak(double amplitude) const {
     const double y = ContactAmplitude(law_.rate * amplitude);
     const SteadyPeak contact = model_.steady_peak(y, law_.shape_exponent);
-    if (series_compliance_ == 0) return {contact};
+    if (series_compliance_ == 0) return contact;
     const double yielding =
         y > 0 ? series_compliance_ * (contact.per_log_stiffness / y) : series_compliance_;
-    return {{contact.force, contact.per_log_stiffness / (1 + yielding),
-             contact.per_shape / (1 + yielding)},
-            -contact.force * (yielding / (1 + yielding))};
+    return {contact.force, contact.per_log_stiffness / (1 + yielding),
+            contact.per_shape / (1 + yielding), -contact.force * (yielding / (1 + yielding))};
   }
 
   [[nodiscard]] BranchScale ScaleOf(const Branch& branch, double origin_force) const {
@@ -133,7 +128,7 @@ class BranchScaling {
       return force_of_parent(static_cast<std::size_t>(branch.parent));
     }
     if (branch.start == BranchStart::kSteadyExtreme) {
-      return -branch.direction * Peak(branch.amplitude).peak.force;
+      return -branch.direction * Peak(branch.amplitude).force;
     }
     return branch.start == BranchStart::kSteadyCentre ? asymmetry : 0.0;
   }

@@ -103,7 +103,7 @@ BranchLaw Made(long double stiffness, double shape_exponent, long double slip_fo
 
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   Require(law, amplitude);
-  return law.slip_force * BranchScaling(model, Normalized(law)).Peak(amplitude).peak.force;
+  return law.slip_force * BranchScaling(model, Normalized(law)).Peak(amplitude).force;
 }
 
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude) {
@@ -111,7 +111,7 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
   const auto y = backbone::Normalize(law.tangential_stiffness, amplitude, law.slip_force);
   const long double unit =
       static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
-  const double peak = BranchScaling(model, Normalized(law)).Peak(amplitude).peak.force;
+  const double peak = BranchScaling(model, Normalized(law)).Peak(amplitude).force;
   const BranchScale scale = model.scale(-peak, /*virgin=*/false);
   // A branch runs from −t* to t* = −t* + h·φ(2ky), so W = 2[∫ branch − 2y·t*] is a Masing loop's
   // energy in other units, (h/4k)·[8∫₀^{2ky} φ − 4·(2ky)·φ(2ky)]: one form, free of cancellation.

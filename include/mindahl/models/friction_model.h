@@ -28,6 +28,7 @@ struct SteadyPeak {
   double force = 0.0;              ///< t*
   double per_log_stiffness = 0.0;  ///< ∂t*/∂ln y
   double per_shape = 0.0;          ///< ∂t*/∂α
+  double per_log_travel = 0.0;     ///< ∂t*/∂ln c of a spring in series, 0 without one
 };
 
 /// A friction model: how a branch of the one law starts. All else follows from these few entries,
