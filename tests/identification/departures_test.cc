@@ -307,6 +307,15 @@ std::vector<Case> Cases() {
       {"force_of_position", 0, 1, of_position(2)},
       {"force_of_position", 1, 1, of_position(3)},
       {"smoothing", 0, kDuration * kDuration, Averaged, kSecondDifferences},
+      {"displacement_sensor_drift", 0, kLength / kDuration,
+       [](const Departed& departed, double size) {
+         const std::vector<double>& time = departed.motion.time;
+         History contact = departed.motion.displacement;
+         for (std::size_t i = 0; i < contact.size(); ++i) {
+           contact[i] += size * (time[i] - (time.front() + time.back()) / 2);
+         }
+         return departed.contact.Force(contact);
+       }},
       {"speed_power", 0, 1, WithSpeed(0.5), kDifferences},
       {"speed_power", 1, 1, WithSpeed(1.0), kDifferences},
       {"slip_position_quadratic", 0, 1, of_slip_force(1, false)},

@@ -22,7 +22,7 @@ struct Thresholds {
   /// the law carries half of Tc, an error of 0.15 is a third of the force: the knee is elsewhere.
   double failing_misfit = 0.15;
   /// [p] Residuals that repeat, and omitted terms, are not noise if white noise makes them less
-  /// often. 22 terms are tried, so one loop in forty has a cause by chance.
+  /// often. 23 terms are tried, so one loop in forty has a cause by chance.
   double rare_chance = 1e-3;
   /// [of the longest] Shorter strokes are not compared. They are nested loops, run-in or run-out.
   double main_stroke = 0.75;

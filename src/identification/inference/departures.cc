@@ -184,6 +184,7 @@ constexpr auto kDepartures = std::to_array<Departure>({
     // A turn is the first of its repeats, where nothing is missed.
     {"held_displacement", "", {Of<&Place::missed>}, {}, /*moves=*/true},
     {"displacement_drift", "displacement_drift", {}, {Of<&Place::time>}},
+    {"displacement_sensor_drift", "", {Of<&Place::time>}, {}, /*moves=*/true},
     {.code = "speed_power",
      .group = "slip_speed",
      .columns = {RootOfSpeed, Of<&Place::velocity>},
