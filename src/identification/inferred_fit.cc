@@ -66,12 +66,12 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     GradeUse(thresholds, result);
   } else if (result.depth >= Depth::kIntervals) {
     const AdequacyTest test = TestAdequacy(fitted);
-    const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
-    result.adequacy = JudgeAdequacy(data, test, causes, limit.has_value(), result, thresholds);
+    result.adequacy = test.adequacy;
+    JudgeAdequacy(limit.has_value(), thresholds, result);
     GradeUse(thresholds, result);
     if (MayOmitTerms(result.adequacy, thresholds)) {
       const double quantile = StudentQuantile(test.degrees_of_freedom, result.confidence);
-      WidenByOmittedTerms(problem, solution, test, causes, quantile, result.parameters);
+      WidenByOmittedTerms(problem, solution, test, quantile, result.parameters);
     }
     if (result.adequacy.verdict != AdequacyVerdict::kAdequate) CoverDiscrepancy(fitted, result);
   }

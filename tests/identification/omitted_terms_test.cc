@@ -87,7 +87,7 @@ TEST(WidenByOmittedTerms, MovesEachEndByTheStepAndTwiceItsError) {
     // The interval starts empty, so the union with it is the omitted term's part alone.
     estimates[k].lower95 = HUGE_VAL;
     estimates[k].upper95 = -HUGE_VAL;
-    WidenByOmittedTerms(problem, solution, test, {}, kQuantile, estimates);
+    WidenByOmittedTerms(problem, solution, test, kQuantile, estimates);
     const Parameter& of = problem.parameters[parameter];
     const double theta = solution.theta[parameter];
     return std::pair(of.ToTheta(*estimates[k].lower95) - theta,

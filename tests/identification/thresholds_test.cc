@@ -3,6 +3,7 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/hull.h"
+#include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
@@ -67,13 +68,6 @@ std::optional<Ends> ShapeBesideRig(const Thresholds& thresholds, const Record& r
 
 // --- verdicts
 
-AdequacyTest TestWith(std::vector<OmittedTerm> fits, double p_value = 1.0) {
-  AdequacyTest test;
-  test.p_value = p_value;
-  test.fits = std::move(fits);
-  return test;
-}
-
 /// Two strokes whose residuals are a share of the force, and whose correlation decays to 1/e over
 /// so many strokes.
 bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
@@ -99,10 +93,10 @@ bool IsCarriedOver(const Thresholds& thresholds, double correlation) {
 
 /// Whether residuals of such a chance are doubted.
 bool IsDoubted(const Thresholds& thresholds, double chance) {
-  const Stages stages(LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 1.0, 40)));
-  return JudgeAdequacy(stages.data, TestWith({}, chance), {}, /*is_limited=*/false, Made(),
-                       thresholds)
-             .verdict == AdequacyVerdict::kDoubtful;
+  FitResult result = Made();
+  result.adequacy.p_value = chance;
+  JudgeAdequacy(/*is_limited=*/false, thresholds, result);
+  return result.adequacy.verdict == AdequacyVerdict::kDoubtful;
 }
 
 OmittedTerm FitWith(double p_value, double delta_aicc) {
@@ -110,10 +104,6 @@ OmittedTerm FitWith(double p_value, double delta_aicc) {
   fit.p_value = p_value;
   fit.delta_aicc = delta_aicc;
   return fit;
-}
-
-std::size_t CausesAmong(const Thresholds& thresholds, std::vector<OmittedTerm> fits) {
-  return CausesOf(TestWith(std::move(fits)), thresholds).size();
 }
 
 /// Whether everything is as the stated value of the threshold makes it.
@@ -204,7 +194,7 @@ const std::vector<Row>& Cases() {
       {&Thresholds::rare_chance,
        [](const Thresholds& t) {
          const auto causes = [&](double p_value) {
-           return CausesAmong(t, {FitWith(p_value, -20)});
+           return CausesOf({FitWith(p_value, -20)}, t).size();
          };
          return causes(kBelow * 1e-3) == 1 && causes(kAbove * 1e-3) == 0;
        }},
@@ -215,7 +205,7 @@ const std::vector<Row>& Cases() {
            best.explains = 0.6;
            OmittedTerm other = FitWith(1e-9, -30);
            other.explains = share * best.explains;
-           return CausesAmong(t, {other, best});
+           return CausesOf({other, best}, t).size();
          };
          return causes(kBelow * 0.5) == 1 && causes(kAbove * 0.5) == 2;
        }},

@@ -27,20 +27,6 @@ double MissedForce(const FitResult& result) {
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
 
-std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
-  std::vector<OmittedTerm> causes = test.fits;
-  std::erase_if(causes, [&](const OmittedTerm& fit) {
-    return !(fit.p_value < thresholds.rare_chance && fit.delta_aicc < 0);
-  });
-  std::ranges::stable_sort(causes, {}, &OmittedTerm::delta_aicc);
-  const double best = causes.empty() ? 0.0 : causes.front().explains;
-  std::erase_if(causes,
-                [&](const OmittedTerm& fit) { return fit.explains < thresholds.rival * best; });
-  // Causes that a fit can model come first: the user can try only those.
-  std::ranges::stable_partition(causes, [](const OmittedTerm& fit) { return !fit.term.empty(); });
-  return causes;
-}
-
 bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   const double least = thresholds.poor_misfit * result.MisfitScale();
   if (result.outliers > 0 || !(least > 0) || !(result.residuals.rms > least)) return false;
@@ -57,14 +43,8 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   return strokes > thresholds.noise_memory * std::max(1.0, forgotten * samples);
 }
 
-Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const OmittedTerm> causes, bool is_limited,
-                       const FitResult& result, const Thresholds& thresholds) {
-  Adequacy adequacy{.misfit_over_noise = test.misfit_over_noise,
-                    .misfit = test.misfit_over_noise * test.noise * data.response_unit(),
-                    .p_value = test.p_value,
-                    .causes = {causes.begin(), causes.end()},
-                    .tried = test.fits.size()};
+void JudgeAdequacy(bool is_limited, const Thresholds& thresholds, FitResult& result) {
+  Adequacy& adequacy = result.adequacy;
   // Noise whatever the model: where strokes of both directions come back what does not repeat with
   // them, else what differs between neighbouring samples.
   double share = 1.0;
@@ -83,10 +63,9 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
     const double excess = noise > 0 ? std::sqrt(square / noise - 1) : 0.0;
     adequacy.misfit_over_noise = std::max(adequacy.misfit_over_noise, excess);
   }
-  const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
+  const bool is_doubtful = adequacy.p_value < thresholds.doubt || is_limited || exceeds_noise ||
                            AreUnlikeNoise(result, thresholds);
   adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
-  return adequacy;
 }
 
 bool MayOmitTerms(const Adequacy& adequacy, const Thresholds& thresholds) {

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "identification/gram/omitted_terms.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/facts.h"
@@ -20,15 +18,10 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
 /// that the causes explain or that repeats in every stroke, of others all but their white noise.
 double MissedForce(const FitResult& result);
 
-/// Returns the omitted terms that noise alone does not make, the best first, without those that
-/// another beats clearly.
-std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
-
-/// Judges a fit doubtful where noise hardly makes what all omitted terms explain, the search ended
-/// at a limit of its own, the residuals are unlike noise, or exceed that of the record itself.
-Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const OmittedTerm> causes, bool is_limited,
-                       const FitResult& result, const Thresholds& thresholds);
+/// Judges a fit, of which omitted terms were tested, doubtful where noise hardly makes what they
+/// explain, the search ended at a limit of its own, the residuals are unlike noise, or exceed that
+/// of the record itself.
+void JudgeAdequacy(bool is_limited, const Thresholds& thresholds, FitResult& result);
 
 /// True if intervals include what omitted terms would change: those of a model that is not
 /// adequate, and where noise alone does not often make what the terms explain.

@@ -95,8 +95,7 @@ void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {
 }
 
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const OmittedTerm> causes, double quantile,
-                         std::span<ParameterEstimate> estimates) {
+                         double quantile, std::span<ParameterEstimate> estimates) {
   constexpr double kFirstOrder = 2.0;
   const auto& reported = problem.parameters.reported();
   const auto& free = problem.parameters.free();
@@ -110,7 +109,7 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
     };
     if (place >= test.step.size()) continue;
     include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
-    for (const OmittedTerm& cause : causes) {
+    for (const OmittedTerm& cause : test.causes) {
       if (place < cause.step.size()) include(cause.step[place], 0.0);
     }
   }

@@ -33,10 +33,9 @@ void CoverSteps(const loop::PreparedRecords& records, FitResult& result);
 
 /// Extends intervals to what they are with γ integrated out. The error counts twice: a step
 /// to first order goes a part of the way to a law of another form.
-/// @param causes  of which a single one may be what is omitted: intervals reach where each leads
+/// A single cause may be what is omitted: intervals reach where each leads.
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const OmittedTerm> causes, double quantile,
-                         std::span<ParameterEstimate> estimates);
+                         double quantile, std::span<ParameterEstimate> estimates);
 
 /// Makes intervals cover the model discrepancy. That of σ includes the stiffness after reversals.
 /// If the measured loop reaches slip, the interval of Tc is replaced by the union of three parts:

@@ -61,6 +61,19 @@ RandomTerms EstimateTerms(const GramAxes& axes, const NoiseLevel& noise) {
 
 }  // namespace
 
+std::vector<OmittedTerm> CausesOf(std::vector<OmittedTerm> terms, const Thresholds& thresholds) {
+  std::erase_if(terms, [&](const OmittedTerm& term) {
+    return !(term.p_value < thresholds.rare_chance && term.delta_aicc < 0);
+  });
+  std::ranges::stable_sort(terms, {}, &OmittedTerm::delta_aicc);
+  const double best = terms.empty() ? 0.0 : terms.front().explains;
+  std::erase_if(terms,
+                [&](const OmittedTerm& term) { return term.explains < thresholds.rival * best; });
+  // Causes that a fit can model come first: the user can try only those.
+  std::ranges::stable_partition(terms, [](const OmittedTerm& term) { return !term.term.empty(); });
+  return terms;
+}
+
 AdequacyTest TestAdequacy(const Estimates& fitted) {
   const Thresholds& thresholds = fitted.thresholds();
   const Problem& problem = fitted.problem();
@@ -104,7 +117,6 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
       .variance = noise.is_known ? noise.variance : left.squaredNorm() / (samples - absorbed),
       .degrees = test.degrees_of_freedom,
       .is_known = noise.is_known};
-  test.noise = std::sqrt(level.variance);
   if (axes.values.size() == 0 || !(level.variance > 0)) return test;
   const RandomTerms terms = EstimateTerms(axes, level);
   const GramStep step = gram.StepBy(axes, terms.gains);
@@ -131,11 +143,15 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
       least = std::min(least, term.p_value);
       explained = std::max(explained, term.explains * gram.sum_of_squares());
     }
-    test.fits.push_back(std::move(term));
+    ++test.adequacy.tried;
   }
-  test.misfit_over_noise = std::sqrt(explained / samples / level.variance);
+  const double misfit_over_noise = std::sqrt(explained / samples / level.variance);
+  test.adequacy.misfit_over_noise = misfit_over_noise;
+  test.adequacy.misfit = misfit_over_noise * std::sqrt(level.variance) * data.response_unit();
   // Two tests are made, of all terms together and of the one that noise alone makes least often.
-  test.p_value = std::min(terms.p_value, 2 * gram.IndependentTests() * least);
+  test.adequacy.p_value = std::min(terms.p_value, 2 * gram.IndependentTests() * least);
+  test.causes = CausesOf(std::move(departures.terms), thresholds);
+  test.adequacy.causes.assign(test.causes.begin(), test.causes.end());
   return test;
 }
 
