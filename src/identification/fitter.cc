@@ -250,33 +250,30 @@ FitResult FitOnce(std::span<const RecordView> records, Depth depth, FitOptions o
   return without;
 }
 
-/// Returns the options of a second fit, with a slip force no larger than the largest force, where
-/// the loop slides over most of its stroke and a law that misses more than poor_misfit carries its
-/// slip force nowhere: the loop has carried it. Nothing where that is not so, where the other law
-/// is preferred, or the user limits Tc.
-std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
-  constexpr const char* kName = "slip_force";
+/// True if the loop slides over most of its stroke, and so has carried its slip force, and a law
+/// that misses more than poor_misfit carries that nowhere; unless the user limits Tc or the other
+/// law is preferred.
+bool RunsAway(const FitResult& result, const FitOptions& options) {
   const Thresholds& thresholds = options.thresholds;
   // Below Depth::kIntervals there is no misfit. The other law may carry the force.
   const bool is_followed = result.adequacy.verdict == AdequacyVerdict::kAdequate ||
                            result.adequacy.misfit <= thresholds.poor_misfit * result.MisfitScale();
-  if (is_followed || result.prefers_other_law() || result.is_scaled_by_load() ||
-      result.response == loop::Channel::kDisplacement || options.bounds.contains(kName) ||
-      options.fixed.contains(kName) || !loop::Slides(result.WidestRecord().facts) ||
-      result.PeakForce() >= thresholds.mobilised * result.law.slip_force) {
-    return std::nullopt;
-  }
-  FitOptions within = options;
-  within.bounds[kName] = {0.0, result.PeakForce()};
-  within.start.clear();
-  return within;
+  const bool is_limited =
+      options.bounds.contains("slip_force") || options.fixed.contains("slip_force");
+  return !is_followed && !is_limited && !result.prefers_other_law() &&
+         !result.is_scaled_by_load() && result.response == loop::Channel::kForce &&
+         loop::Slides(result.WidestRecord().facts) &&
+         result.PeakForce() < thresholds.mobilised * result.law.slip_force;
 }
 
-/// Fits, and once more where the slip force runs away from what was measured.
+/// Fits, and with a slip force no larger than the largest force where it runs away from that.
 FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& options) {
   FitResult result = FitOnce(records, depth, options);
-  if (const std::optional<FitOptions> within = WithinMeasuredForce(result, options)) {
-    result = FitOnce(records, depth, *within);
+  if (RunsAway(result, options)) {
+    FitOptions within = options;
+    within.bounds["slip_force"] = {0.0, result.PeakForce()};
+    within.start.clear();
+    result = FitOnce(records, depth, std::move(within));
     // The largest force is known no better than the law follows it.
     if (IsFitted(result) && result.parameters[kSlipForce].upper95) {
       const double value = result.parameters[kSlipForce].value;

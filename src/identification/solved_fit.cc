@@ -175,8 +175,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   // Outliers may have hidden the initial state: once more from all starts, as weighted.
   SolvedFit again = FitBestState(attempt);
   if (!std::isfinite(again.solution().sum_of_squares)) return solved;
-  best = std::move(again.best);
-  solved.of_other_state = again.of_other_state;
+  solved = std::move(again);
   fit_with_weights();
   return solved;
 }
