@@ -63,15 +63,16 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
   RequireNonNegative("displacement noise [m]", expected.displacement_noise);
   if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
   const loop::Record record = LoopOf(expected, protocol);
-  const FitOptions options = OptionsOf(expected);
+  FitOptions options = OptionsOf(expected);
   const loop::RecordView view = record;
   loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
+  options.preparation.drawn = loop::DrawReadings(prepared);
   ScaledRecords data = Scale(prepared, options);
   const Problem problem(data, options, models::InitialState::kSteady);
   const std::vector<double> theta = problem.parameters.Theta();
   Solution solution{.theta = theta};
   Noise noise;
-  FitWithWeights(problem, data, options, loop::DrawReadings(prepared).get(), solution, noise);
+  FitWithWeights(problem, data, options, solution, noise);
   solution.theta = theta;
   const Estimates estimates(problem, solution, noise, options,
                             Response(problem).LinearizeAt(theta, problem.parameters.free()));

@@ -167,8 +167,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   TryTurnsBetweenSamples(attempt, best);
   const auto fit_with_weights = [&] {
     solved.is_settled =
-        FitWithWeights(best.problem, attempt.data, options, options.preparation.drawn.get(),
-                       best.solution, solved.noise);
+        FitWithWeights(best.problem, attempt.data, options, best.solution, solved.noise);
   };
   fit_with_weights();
   if (options.loss == Loss::kNone) return solved;

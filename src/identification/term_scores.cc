@@ -39,7 +39,7 @@ TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> insi
                        const Linearization& at, const Evidence& evidence,
                        std::span<const std::size_t> added, const Eigen::MatrixXd& columns) {
   const Gram gram(at.jacobian, columns, at.residual, kOwnShare);
-  const GramAxes axes = gram.AxesOfAll();
+  const GramAxes axes = gram.AxesOf();
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
   for (Eigen::Index c = 0; const std::size_t p : added) {
@@ -65,7 +65,8 @@ FitOptions TermChoice::AddedTo(FitOptions options) const {
   for (const std::string& term : terms) {
     if (!HasTerm(options, term)) options.terms.push_back(term);
   }
-  if (!covariate.empty()) options.covariates.push_back(covariate);
+  const bool has_it = std::ranges::count(options.covariates, covariate) > 0;
+  if (!covariate.empty() && !has_it) options.covariates.push_back(covariate);
   return options;
 }
 

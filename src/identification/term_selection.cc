@@ -195,9 +195,7 @@ class Selection {
   std::vector<TermCandidate*> Score() {
     if (!IsFitted(base_.fit) || !base_.fit.converged) return {};
     std::vector<TermChoice> choices;
-    for (const TermCandidate& candidate : candidates_) {
-      choices.push_back(IsAdded(candidate.name) ? TermChoice() : candidate.choice);
-    }
+    for (const TermCandidate& candidate : candidates_) choices.push_back(candidate.choice);
     const auto scores = ScoreTerms(records_, base_.fit, base_.options, choices);
     std::vector<TermCandidate*> scored;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {

@@ -102,9 +102,9 @@ struct WeightedFit {
 inline WeightedFit FitWeighted(Stages& stages) {
   WeightedFit result;
   result.solution = stages.Solve();
-  const auto drawn = loop::DrawReadings(stages.prepared);
+  stages.options.preparation.drawn = loop::DrawReadings(stages.prepared);
   EXPECT_TRUE(identification::FitWithWeights(stages.problem, stages.data, stages.options,
-                                             drawn.get(), result.solution, result.noise));
+                                             result.solution, result.noise));
   return result;
 }
 

@@ -76,26 +76,24 @@ double Gram::IndependentTests() const {
   return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
 }
 
-GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& at) const {
+GramAxes Gram::AxesOf(std::vector<Eigen::Index> places) const {
+  if (places.empty()) {
+    places.resize(static_cast<std::size_t>(free_.cols()));
+    std::iota(places.begin(), places.end(), Eigen::Index{0});
+  }
   GramAxes axes;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free_(at, at));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free_(places, places));
   // Square of the norm of an axis that is independent of the others.
   constexpr double kLeast = 1e-6;
   const Eigen::Index count = (pairs.eigenvalues().array() > kLeast).count();  // the last ones
   axes.values = pairs.eigenvalues().tail(count).array();
   axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);
-  axes.vectors(at, Eigen::all) = pairs.eigenvectors().rightCols(count);
+  axes.vectors(places, Eigen::all) = pairs.eigenvectors().rightCols(count);
   axes.coefficients = (axes.vectors.transpose() * free_residual_).array() / axes.values.sqrt();
   const Eigen::MatrixXd noise = free_noise_ * axes.vectors;
   axes.noise =
       (axes.vectors.cwiseProduct(noise).colwise().sum().transpose().array() / axes.values).max(1.0);
   return axes;
-}
-
-GramAxes Gram::AxesOfAll() const {
-  std::vector<Eigen::Index> all(static_cast<std::size_t>(free_.cols()));
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  return AxesOf(all);
 }
 
 GramStep Gram::StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const {

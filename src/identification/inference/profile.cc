@@ -48,11 +48,7 @@ class HeldParameter {
   /// @param region  to which θ of the fits that are not rejected is added
   HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
                 Region& region)
-      : fitted_(fitted),
-        problem_(fitted.problem()),
-        parameter_(parameter),
-        options_(options),
-        region_(region) {}
+      : fitted_(fitted), parameter_(parameter), options_(options), region_(region) {}
 
   /// True if a slip force far above the largest force, which is about 1, is not excluded.
   bool IsOpenAbove() {
@@ -111,7 +107,7 @@ class HeldParameter {
   }
 
   const Estimates& fitted_;
-  Problem problem_;
+  Problem problem_ = fitted_.problem();
   std::size_t parameter_;
   SolverOptions options_;
   Region& region_;

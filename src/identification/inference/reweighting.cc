@@ -66,15 +66,8 @@ double Rms(const Eigen::ArrayXd& values) { return std::sqrt(values.square().mean
 class Reweighting {
  public:
   Reweighting(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-              const loop::DrawnReadings* drawn, Solution& solution)
-      : problem_(problem),
-        data_(data),
-        options_(options),
-        drawn_(drawn),
-        solution_(solution),
-        counts_(data.All(&ScaledRecord::counts)),
-        force_(Predict(problem, solution.theta)),
-        from_displacement_(Eigen::ArrayXd::Zero(counts_.size())) {}
+              Solution& solution)
+      : problem_(problem), data_(data), options_(options), solution_(solution) {}
 
   /// Fits until the forces settle. Returns whether they did.
   bool Settle(Loss loss) {
@@ -213,28 +206,29 @@ class Reweighting {
   const Problem& problem_;
   ScaledRecords& data_;
   const FitOptions& options_;
-  const loop::DrawnReadings* drawn_;
+  const loop::DrawnReadings* drawn_ = options_.preparation.drawn.get();
   Solution& solution_;
-  Eigen::ArrayXd counts_;             // 1 of a sample that counts, else 0
-  Eigen::ArrayXd force_;              // of the solution
-  Eigen::ArrayXd from_displacement_;  // variance σ_T² of the draws at every sample
-  double fraction_ = 1.0;             // of new draws in it
-  Eigen::MatrixXd errors_;            // of the last draws
-  Eigen::ArrayXd drawn_at_;           // forces
-  double unit_ = 0.0;                 // deviation of the weighted residuals
-  Eigen::ArrayXd weights_;            // roots
+  Eigen::ArrayXd counts_ = data_.All(&ScaledRecord::counts);   // 1 of a sample that counts, else 0
+  Eigen::ArrayXd force_ = Predict(problem_, solution_.theta);  // of the solution
+  /// Variance σ_T² of the draws at every sample.
+  Eigen::ArrayXd from_displacement_ = Eigen::ArrayXd::Zero(counts_.size());
+  double fraction_ = 1.0;    // of new draws in it
+  Eigen::MatrixXd errors_;   // of the last draws
+  Eigen::ArrayXd drawn_at_;  // forces
+  double unit_ = 0.0;        // deviation of the weighted residuals
+  Eigen::ArrayXd weights_;   // roots
   Noise noise_;
 };
 
 }  // namespace
 
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const loop::DrawnReadings* drawn, Solution& solution, Noise& noise) {
-  if (options.loss == Loss::kNone && drawn == nullptr) {
+                    Solution& solution, Noise& noise) {
+  if (options.loss == Loss::kNone && !options.preparation.drawn) {
     noise = PlainNoise(problem, options, solution.sum_of_squares);
     return true;
   }
-  Reweighting fits(problem, data, options, drawn, solution);
+  Reweighting fits(problem, data, options, solution);
   // Other losses have several minima: they start from Huber's, which has one.
   if (options.loss == Loss::kCauchy || options.loss == Loss::kTukey) fits.Settle(Loss::kHuber);
   bool is_settled = fits.Settle(options.loss);

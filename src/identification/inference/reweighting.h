@@ -26,11 +26,11 @@ Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& pro
 /// - a robust loss of the standardised residual, whose scale is the median absolute deviation:
 ///   ceres::Solve minimises it, and the weights ψ(z)/z at the minimum are those of the errors
 /// @param data      of the problem: its weights are written
-/// @param drawn     readings of the records; null where their displacements are exact
+/// @param options   with drawn readings of the records where their displacements are inexact
 /// @param solution  refitted from where it is
 /// @param noise     what the weights stand for
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const loop::DrawnReadings* drawn, Solution& solution, Noise& noise);
+                    Solution& solution, Noise& noise);
 
 }  // namespace mindahl::identification
