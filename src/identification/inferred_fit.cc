@@ -59,7 +59,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   if (solved.of_other_state) IncludeLaw(*solved.of_other_state, result.parameters);
   if (!data.is_forced()) CoverSteps(attempt.prepared, result);
-  const std::optional<Finding> limit = FindSearchLimit(problem, solution);
+  const std::vector<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (result.depth >= Depth::kIntervals && is_rounding) {
     result.adequacy.tried = 1;
@@ -67,7 +67,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   } else if (result.depth >= Depth::kIntervals) {
     const AdequacyTest test = TestAdequacy(fitted);
     result.adequacy = test.adequacy;
-    JudgeAdequacy(limit.has_value(), thresholds, result);
+    JudgeAdequacy(/*is_limited=*/!limit.empty(), thresholds, result);
     GradeUse(thresholds, result);
     if (MayOmitTerms(result.adequacy, thresholds)) {
       const double quantile = StudentQuantile(test.degrees_of_freedom, result.confidence);

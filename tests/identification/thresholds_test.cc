@@ -62,7 +62,7 @@ std::optional<Ends> ShapeBesideRig(const Thresholds& thresholds, const Record& r
   const Estimates estimates = testing::EstimatesOf(stages, best, noise);
   ParameterEstimates parameters = ValuesOf(stages.problem, best);
   parameters[kShape].upper95 = parameters[kShape].value;
-  if (!IncludeCompliantRig(estimates, parameters)) return {};
+  if (IncludeCompliantRig(estimates, parameters).empty()) return {};
   return Ends{.lower = parameters[kShape].lower95, .upper = parameters[kShape].upper95};
 }
 

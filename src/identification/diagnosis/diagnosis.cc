@@ -13,10 +13,17 @@
 namespace mindahl::identification {
 namespace {
 
-/// Adds the number of the record where there are several.
-Finding OfRecord(std::size_t record, std::size_t records, Finding finding) {
-  if (records > 1) finding.numbers.emplace_back("record", static_cast<double>(record + 1));
-  return finding;
+/// Finds something in each record, and adds the record's number where there are several.
+template <typename Records, typename Find>
+std::vector<Finding> FindInEach(const Records& records, Find find) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    for (Finding& finding : find(records[r])) {
+      if (records.size() > 1) finding.numbers.emplace_back("record", static_cast<double>(r + 1));
+      findings.push_back(std::move(finding));
+    }
+  }
+  return findings;
 }
 
 /// True if a spring parallel to the contact is fitted to a loop that leaves Tc open above: far from
@@ -42,7 +49,7 @@ bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
 ///   the first sample: the first branch, then probably from an unrecorded reversal, is the virgin
 ///   curve scaled by two;
 /// - records that turn less than twice and do not start where the contact is unloaded.
-std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult& result) {
+std::vector<Finding> FindUnknownPast(const Estimates& fitted, const FitResult& result) {
   constexpr double kNearEnd = 0.2;  // [half range]
   constexpr double kFar = 0.5;
   const Problem& problem = fitted.problem();
@@ -62,8 +69,7 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
     const double away = std::abs(front - unloaded);
     if (is_virgin_masing && inside < kNearEnd * half && away > kFar * half &&
         !loop::HasSlipped(result.records[r].facts)) {
-      return Finding{
-          .code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"};
+      return {{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "elsewhere"}};
     }
     const bool starts_unloaded = problem.is_virgin() && !problem.parameters[origin].assumed &&
                                  away <= thresholds.starts_unloaded * half;
@@ -72,20 +78,20 @@ std::optional<Finding> FindUnknownPast(const Estimates& fitted, const FitResult&
     is_cut = is_cut &&
              (problem.parameters[origin].assumed || record.StartsInside(thresholds.starts_inside));
   }
-  if (is_told) return std::nullopt;
+  if (is_told) return {};
   Finding finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
   if (is_cut) finding.parameters.insert(finding.parameters.begin(), "sigma");
-  return finding;
+  return {finding};
 }
 
 /// An asymmetry of a contact that had been cycled before the records, and does not slip as a whole
 /// in every one of those whose force has a known zero.
-std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
+std::vector<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
   const bool is_asked = asymmetry != nullptr && asymmetry->status != ParameterStatus::kFixed &&
                         result.initial_state == models::InitialState::kSteady &&
                         result.model->memory != models::Memory::kNone;
-  if (!is_asked) return std::nullopt;
+  if (!is_asked) return {};
   for (const RecordFit& record : result.records) {
     const ParameterEstimate* zero = result.FindOf(record, "force_offset");
     const bool is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
@@ -93,19 +99,19 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
     const double amplitude = ContactAmplitude(result, law, record.facts.amplitude);
     const double peak_force = models::SteadyPeakForce(*result.model, law, amplitude);
     if (!is_known || peak_force >= (1 - thresholds.never_slips) * law.slip_force) continue;
-    return Finding{.code = "not_identifiable", .parameters = {"asymmetry"}, .kind = "below_slip"};
+    return {{.code = "not_identifiable", .parameters = {"asymmetry"}, .kind = "below_slip"}};
   }
-  return std::nullopt;
+  return {};
 }
 
 /// A force that stands at its largest or least reading in a twentieth of the samples, though it has
 /// noise, the law leaves some, and no other reading repeats: at its sensor's limit.
-std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
-                                        const FitResult& result) {
+std::vector<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
+                                      const FitResult& result) {
   constexpr double kOften = 0.05;  // of the samples
   constexpr double kLeast = 4;     // samples
   constexpr double kNoise = 1e-4;  // of the range: what is computed repeats its slip force
-  if (!(result.rms > kNoise * result.PeakForce())) return std::nullopt;
+  if (!(result.rms > kNoise * result.PeakForce())) return {};
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> force = record.record.force;
     const auto [lowest, highest] = std::ranges::minmax(force);
@@ -120,17 +126,17 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records,
       std::ranges::sort(others);
       const std::size_t repeated = std::ranges::unique(others).size();
       if (!is_noisy || 2 * repeated > others.size()) continue;
-      return Finding{.code = "force_at_limit",
-                     .parameters = {"alpha", "slip_force"},
-                     .numbers = {{"limit", limit}, {"share", at_limit / count}}};
+      return {{.code = "force_at_limit",
+               .parameters = {"alpha", "slip_force"},
+               .numbers = {{"limit", limit}, {"share", at_limit / count}}}};
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 /// Samples at few places of the loop, however many they are: no cycle shows what lies between them,
 /// nor where it turned.
-std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
+std::vector<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
   std::size_t places = 0;
   for (const ScaledRecord& record : problem.data->records) {
     const std::span<const double> excitation = record.excitation();
@@ -148,14 +154,15 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
       places += way.size() - std::ranges::unique(way, are_same).size();
     }
   }
-  if (static_cast<double>(places) >= thresholds.fewest_places) return std::nullopt;
+  if (static_cast<double>(places) >= thresholds.fewest_places) return {};
   Finding finding{.code = "not_identifiable",
                   .numbers = {{"places", static_cast<double>(places)}},
                   .kind = "few_places"};
   for (const std::size_t p : {kStiffness, kShape}) {  // unless a prior says more
     if (problem.parameters[p].is_open()) finding.parameters.push_back(problem.parameters.NameOf(p));
   }
-  return finding.parameters.empty() ? std::nullopt : std::optional(finding);
+  if (finding.parameters.empty()) return {};
+  return {finding};
 }
 
 /// Parameters whose prior lies far from the records' own estimate; where the model does not
@@ -207,31 +214,26 @@ std::vector<Finding> FindContradicted(const Estimates& fitted, const FitResult& 
 }  // namespace
 
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const RecordFit& record = records[r];
-    const auto append = [&](Finding finding) {
-      findings.push_back(OfRecord(r, records.size(), std::move(finding)));
-    };
+  return FindInEach(records, [](const RecordFit& record) {
+    std::vector<Finding> findings;
     // Counted as the report does, after smoothing.
     const auto count = static_cast<double>(record.reversals.size());
     if (!record.gate.certain) {
-      append({.code = "reversals_uncertain",
-              .numbers = {{"count", count}, {"gate", record.gate.gate}}});
+      findings.push_back({.code = "reversals_uncertain",
+                          .numbers = {{"count", count}, {"gate", record.gate.gate}}});
     }
-    if (!record.facts.closed) append({.code = "no_closed_cycle"});
-  }
-  return findings;
+    if (!record.facts.closed) findings.push_back({.code = "no_closed_cycle"});
+    return findings;
+  });
 }
 
 std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> records) {
   constexpr double kLong = 0.25;   // of a cycle: where it turned may not be seen
   constexpr double kMeans = 10.0;  // of the times between rows
   constexpr double kAway = 5.0;    // steps of the displacement: a pause goes on where it began
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::RecordView& record = records[r].record;
-    if (record.time.size() < 2) continue;
+  return FindInEach(records, [](const loop::PreparedRecord& prepared) -> std::vector<Finding> {
+    const loop::RecordView& record = prepared.record;
+    if (record.time.size() < 2) return {};
     const Eigen::Index steps = std::ssize(record.time) - 1;
     const Eigen::Map<const Eigen::ArrayXd> time(record.time.data(), steps + 1);
     const Eigen::Map<const Eigen::ArrayXd> displacement(record.displacement.data(), steps + 1);
@@ -240,24 +242,19 @@ std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> recor
     const double gap = (time.tail(steps) - time.head(steps)).maxCoeff(&widest);
     const double rest = time[steps] - time[0] - gap;
     const auto others = static_cast<double>(steps - 1);
-    const double strokes = static_cast<double>(records[r].reversals.size()) + 1;
-    if (gap > kLong * 2 * rest / strokes && gap * others > kMeans * rest &&
-        ways[widest] * others > kAway * (ways.sum() - ways[widest])) {
-      findings.push_back(
-          OfRecord(r, records.size(),
-                   {.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest]}}}));
-    }
-  }
-  return findings;
+    const double strokes = static_cast<double>(prepared.reversals.size()) + 1;
+    const bool is_gap = gap > kLong * 2 * rest / strokes && gap * others > kMeans * rest &&
+                        ways[widest] * others > kAway * (ways.sum() - ways[widest]);
+    if (!is_gap) return {};
+    return {{.code = "rows_missing", .numbers = {{"gap", gap}, {"from", time[widest]}}}};
+  });
 }
 
 std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
-  std::vector<Finding> findings;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
+  return FindInEach(data.records, [](const ScaledRecord& record) -> std::vector<Finding> {
     const bool is_followed = !record.load_ratio.empty();
     const std::vector<double>& load = is_followed ? record.load_ratio : record.load_change;
-    if (load.empty()) continue;
+    if (load.empty()) return {};
     std::vector<double> counted;
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (record.counts[i] != 0) counted.push_back(load[i]);
@@ -265,17 +262,15 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
     const Eigen::Map<const Eigen::ArrayXd> of(counted.data(), std::ssize(counted));
     // The mean of a load of either sign differs from that of its magnitude.
     const double variation = std::sqrt(2 * (of - of.mean()).square().mean());
-    findings.push_back(OfRecord(r, data.records.size(),
-                                {.code = "load_varies",
-                                 .severity = is_followed ? Severity::kNote : Severity::kWarning,
-                                 .numbers = {{"variation", variation}},
-                                 .kind = is_followed ? "followed" : "not_followed"}));
-  }
-  return findings;
+    return {{.code = "load_varies",
+             .severity = is_followed ? Severity::kNote : Severity::kWarning,
+             .numbers = {{"variation", variation}},
+             .kind = is_followed ? "followed" : "not_followed"}};
+  });
 }
 
-std::optional<Finding> FindUndetermined(const Estimates& fitted) {
-  if (fitted.open_directions() == 0) return std::nullopt;
+std::vector<Finding> FindUndetermined(const Estimates& fitted) {
+  if (fitted.open_directions() == 0) return {};
   std::vector<std::string> names;
   const Parameters& parameters = fitted.problem().parameters;
   for (const std::size_t p : parameters.free()) {
@@ -283,9 +278,9 @@ std::optional<Finding> FindUndetermined(const Estimates& fitted) {
   }
   // With as many directions as names, each parameter is undetermined by itself.
   const bool are_alone = fitted.open_directions() >= names.size();
-  return Finding{.code = "not_identifiable",
-                 .parameters = std::move(names),
-                 .kind = are_alone ? "without_effect" : "combination"};
+  return {{.code = "not_identifiable",
+           .parameters = std::move(names),
+           .kind = are_alone ? "without_effect" : "combination"}};
 }
 
 std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
@@ -338,7 +333,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+std::vector<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
   const Parameters& parameters = problem.parameters;
   for (const std::size_t p : parameters.free()) {
     const BoundSide side = SideOf(parameters[p], solution.theta[p]);
@@ -349,9 +344,9 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
     for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
       if (!parameters[law].fixed) finding.parameters.push_back(parameters.NameOf(law));
     }
-    return finding;
+    return {finding};
   }
-  return std::nullopt;
+  return {};
 }
 
 std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::PreparedRecords& records,
@@ -370,13 +365,13 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
   return findings;
 }
 
-std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
-  if (!choice || (choice->decided() && !choice->prefers_alternative())) return std::nullopt;
+std::vector<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
+  if (!choice || (choice->decided() && !choice->prefers_alternative())) return {};
   const bool is_better = choice->prefers_alternative();
-  return Finding{.code = "other_law",
-                 .severity = is_better ? Severity::kWarning : Severity::kNote,
-                 .parameters = {"sigma", "slip_force"},
-                 .kind = is_better ? "better" : "undecided"};
+  return {{.code = "other_law",
+           .severity = is_better ? Severity::kWarning : Severity::kNote,
+           .parameters = {"sigma", "slip_force"},
+           .kind = is_better ? "better" : "undecided"}};
 }
 
 }  // namespace mindahl::identification

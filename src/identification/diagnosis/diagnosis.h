@@ -4,7 +4,6 @@
 #include <iterator>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "identification/inference/estimates.h"
@@ -18,10 +17,6 @@ namespace mindahl::identification {
 
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
-
-inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
-  if (finding) findings.push_back(std::move(*finding));
-}
 
 inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
   std::ranges::move(more, std::back_inserter(findings));
@@ -39,7 +34,7 @@ std::vector<Finding> FindMissingRows(std::span<const loop::PreparedRecord> recor
 std::vector<Finding> FindVaryingLoads(const ScaledRecords& data);
 
 /// Parameters on which, alone or combined, the records do not depend.
-std::optional<Finding> FindUndetermined(const Estimates& fitted);
+std::vector<Finding> FindUndetermined(const Estimates& fitted);
 
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);
@@ -50,7 +45,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a
 /// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution);
+std::vector<Finding> FindSearchLimit(const Problem& problem, const Solution& solution);
 
 /// Finds what else leaves a parameter open, or contradicts it: an unknown past, few places of the
 /// loop, a force at its sensor's limit, an asymmetry below slip, a prior, FindOpenSlipForce().
@@ -58,6 +53,6 @@ std::vector<Finding> FindOnParameters(const Estimates& fitted, const loop::Prepa
                                       const FitResult& result);
 
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
-std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
+std::vector<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
 
 }  // namespace mindahl::identification

@@ -25,8 +25,7 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters) {
   }
 }
 
-std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
-                                           ParameterEstimates& parameters) {
+std::vector<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters) {
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
   const ParameterEstimate& shape = parameters[kShape];
@@ -37,7 +36,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
       problem.parameters[kShape].has_prior() || !shape.upper95 ||
       !(*shape.upper95 + kFurther * (*shape.upper95 - shape.value) < kMindlinShapeExponent)) {
-    return std::nullopt;
+    return {};
   }
   constexpr double kStiffer = 0.1;  // of the compliance is the contact's
   FitOptions with_rig = fitted.options();
@@ -55,7 +54,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss = fitted.FStatistic(kShape, solution.sum_of_squares);
-  if (!solution.converged || !(loss < fitted.thresholds().indistinguishable)) return std::nullopt;
+  if (!solution.converged || !(loss < fitted.thresholds().indistinguishable)) return {};
   const Parameters& of_rig = sprung.problem.parameters;
   const models::SeriesSpring rig = of_rig.RigAt(solution.theta);
   const models::BranchLaw law = of_rig.LawAt(solution.theta);
@@ -73,7 +72,7 @@ std::optional<Finding> IncludeCompliantRig(const Estimates& fitted,
       Include(*same, {.lower = other.lower95, .upper = other.upper95});
     }
   }
-  return Finding{.code = "shape_or_rig", .numbers = {{"rig_stiffness", rig.stiffness}}};
+  return {{.code = "shape_or_rig", .numbers = {{"rig_stiffness", rig.stiffness}}}};
 }
 
 void CoverSteps(const loop::PreparedRecords& records, FitResult& result) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "identification/gram/omitted_terms.h"
@@ -22,8 +21,8 @@ void IncludeLaw(const models::BranchLaw& law, ParameterEstimates& parameters);
 /// Extends intervals by those of Mindlin's contact in a compliant rig, where the record does not
 /// distinguish it: a rig makes a loop more angular, as a smaller α than Mindlin's does. A contact
 /// far stiffer than its rig is Jenkins' element, the same curve with no other α: it is left out.
-/// @returns `shape_or_rig`; empty where a rig does not restore 1/3 or is there already
-std::optional<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters);
+/// @returns `shape_or_rig`; nothing where a rig does not restore 1/3 or is there already
+std::vector<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstimates& parameters);
 
 /// Includes what steps of the readings may hide. Of the force: half of one, where no noise makes it
 /// dither; branches whose α differ by 0.05 are no more than 1 % of Tc apart. Of the displacement: a
