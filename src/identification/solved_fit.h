@@ -44,11 +44,6 @@ ScaledRecords ScaledAsFitted(std::span<const loop::RecordView> records, FitOptio
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
 
-/// Adds to what a solution says by itself its noise, errors and intervals and, by the depth,
-/// adequacy, profiles and tests.
-/// @param result  values, residuals and what the records show without a model, as assembled
-FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
-
 /// Masing's law against Dahl's own, whichever was fitted, by AICc on the effective samples of the
 /// one that leaves less. The other is fitted too where the record may distinguish them, from where
 /// its loop at the widest amplitude is the same; of one amplitude it follows in closed form.
