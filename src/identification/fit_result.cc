@@ -88,8 +88,7 @@ double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
 double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
   if (estimate.status == ParameterStatus::kFixed) return 0.0;
   const std::optional<double>& end = value < estimate.value ? estimate.lower95 : estimate.upper95;
-  const Term* term = FindTerm(TermNameOf(estimate.name));
-  const bool is_positive = term != nullptr && term->positive;
+  const bool is_positive = TermOfParameter(estimate.name)->positive;
   const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
   if (!has_error || !end || (is_positive && !(*end > 0))) return kUnbounded;
   const double way = is_positive ? estimate.value * std::abs(std::log(*end / estimate.value))

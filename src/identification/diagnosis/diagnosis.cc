@@ -175,7 +175,7 @@ std::vector<Finding> FindContradicted(const Estimates& fitted, const FitResult& 
   const Problem& problem = fitted.problem();
   const std::vector<double>& theta = fitted.solution().theta;
   const std::vector<std::size_t>& free = problem.parameters.free();
-  const Linearization at = WithPriors(problem, theta, fitted.linearization());
+  const Linearization at = fitted.WithPriors();
   Eigen::Index row = fitted.linearization().residual.size() - 1;
   std::vector<Finding> findings;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {

@@ -30,9 +30,9 @@ std::vector<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstim
 /// places, the errors of the encoder repeat and do not average out.
 void CoverSteps(const loop::PreparedRecords& records, FitResult& result);
 
-/// Extends intervals to what they are with γ integrated out. The error counts twice: a step
-/// to first order goes a part of the way to a law of another form.
-/// A single cause may be what is omitted: intervals reach where each leads.
+/// Extends intervals to what they are with γ integrated out, and to where each cause leads, which
+/// alone may be what is omitted. The error counts twice: a step to first order goes a part of the
+/// way to a law of another form.
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
                          double quantile, std::span<ParameterEstimate> estimates);
 

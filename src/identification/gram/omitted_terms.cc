@@ -80,7 +80,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
   const ScaledRecords& data = *problem.data;
-  auto [jacobian, residual] = WithPriors(problem, solution.theta, fitted.linearization());
+  auto [jacobian, residual] = fitted.WithPriors();
   // A parameter at a bound, the user's or the program's, cannot move: its column explains nothing.
   for (Eigen::Index j = 0; const std::size_t p : problem.parameters.free()) {
     auto column = jacobian.col(j++);

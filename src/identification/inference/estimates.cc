@@ -42,20 +42,6 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   return values;
 }
 
-Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at) {
-  const std::vector<std::size_t>& free = problem.parameters.free();
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const Parameter& parameter = problem.parameters[free[j]];
-    if (!parameter.has_prior()) continue;
-    const Eigen::Index row = at.residual.size();
-    at.jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, at.jacobian.cols()));
-    at.jacobian(row, static_cast<Eigen::Index>(j)) = parameter.prior_root_weight;
-    at.residual.conservativeResize(row + 1);
-    at.residual[row] = parameter.prior_root_weight * (theta[free[j]] - parameter.prior_theta);
-  }
-  return at;
-}
-
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
                      const FitOptions& options, Linearization at)
     : problem_(problem),
@@ -119,6 +105,22 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
   // Element by element: symmetric to the last bit.
   factor_ = root.lazyProduct(root.transpose());
   white_factor_ = directions.lazyProduct(directions.transpose());
+}
+
+Linearization Estimates::WithPriors() const {
+  Linearization at = at_;
+  const std::vector<std::size_t>& free = problem_.parameters.free();
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const Parameter& parameter = problem_.parameters[free[j]];
+    if (!parameter.has_prior()) continue;
+    const Eigen::Index row = at.residual.size();
+    at.jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, at.jacobian.cols()));
+    at.jacobian(row, static_cast<Eigen::Index>(j)) = parameter.prior_root_weight;
+    at.residual.conservativeResize(row + 1);
+    at.residual[row] =
+        parameter.prior_root_weight * (solution_.theta[free[j]] - parameter.prior_theta);
+  }
+  return at;
 }
 
 std::optional<Eigen::Index> Estimates::PlaceOf(std::size_t parameter) const {

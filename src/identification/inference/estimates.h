@@ -40,9 +40,6 @@ void SetInterval(ParameterEstimate& estimate, Ends ends);
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, Ends ends);
 
-/// Returns it with each prior of a free parameter as one more reading: a row at the end.
-Linearization WithPriors(const Problem& problem, std::span<const double> theta, Linearization at);
-
 /// A problem with its solution and its noise, and standard errors, intervals and correlations from
 /// the likelihood's parabola at its maximum. Never fails: by the singular values of the Jacobian,
 /// columns scaled to unit norm, it knows which parameters the data leave open.
@@ -89,6 +86,8 @@ class Estimates {
   }
   /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Linearization& linearization() const { return at_; }
+  /// The same, with each prior of a free parameter as one more reading: a row at the end.
+  [[nodiscard]] Linearization WithPriors() const;
 
  private:
   /// Returns the place among the free parameters; nothing of one that is fixed or undetermined.
