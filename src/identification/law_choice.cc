@@ -100,7 +100,7 @@ bool HasOneAmplitude(const ScaledRecords& data, double step, const Thresholds& t
   double narrowest = std::numeric_limits<double>::infinity();
   for (const ScaledRecord& record : data.records) {
     if (record.reversals.empty()) return false;
-    const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+    const std::vector<Stroke> strokes = StrokesOf(record);
     widest = std::max(widest, std::ranges::max(strokes, {}, &Stroke::length).length);
     for (const Stroke& stroke : std::span(strokes).subspan(1, strokes.size() - 2)) {
       narrowest = std::min(narrowest, stroke.length);

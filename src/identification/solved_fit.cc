@@ -149,7 +149,11 @@ ScaledRecords ScaledAsFitted(std::span<const loop::RecordView> records, FitOptio
                              const FitOptions& with, const FitResult& fit) {
   options.preparation.force_sense = fit.force_sense;
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  return Scale(prepared, options, &fit, &with);
+  ScaledRecords data = Scale(prepared, options, &with);
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    data.records[r].turns_between = fit.records[r].turns_between;
+  }
+  return data;
 }
 
 SolvedFit SolveFit(const Attempt& attempt) {

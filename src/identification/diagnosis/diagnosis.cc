@@ -140,7 +140,7 @@ std::vector<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thr
   std::size_t places = 0;
   for (const ScaledRecord& record : problem.data->records) {
     const std::span<const double> excitation = record.excitation();
-    const std::vector<double> direction = DirectionsOf(excitation, record.reversals);
+    const std::vector<double> direction = DirectionsOf(record);
     std::array<std::vector<double>, 2> ways;  // down, up
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (record.counts[i] == 0) continue;

@@ -56,7 +56,7 @@ void SetMissedWay(std::span<Place> places) {
 /// Sets how far the response has come in its stroke, and by how much it changes there.
 void SetProgress(const ScaledRecord& record, std::span<const double> response,
                  std::span<Place> places) {
-  for (const Stroke& stroke : StrokesOf(record.excitation(), record.reversals)) {
+  for (const Stroke& stroke : StrokesOf(record)) {
     const double change = response[stroke.end] - response[stroke.begin];
     for (std::size_t i = stroke.begin == 0 ? 0 : stroke.begin + 1; i <= stroke.end; ++i) {
       const double way = response[i] - response[stroke.begin];

@@ -114,7 +114,7 @@ std::pair<double, double> TimeOfTurn(const ScaledRecord& motion, std::size_t nex
 /// rests beyond its ends; where the record turns at its samples it runs straight between them.
 std::vector<models::Turn> MoveLate(const ScaledRecord& record, std::span<const models::Turn> turns,
                                    double lag, std::vector<double>& late) {
-  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
+  const ScaledRecord& motion = record.motion();
   const std::span<const double> x = motion.displacement;
   const std::span<const double> t = motion.time;
   std::vector<models::Turn> moved;
@@ -157,7 +157,7 @@ std::vector<models::Turn> MoveBehindGap(const ScaledRecord& record,
                                         std::vector<double>& behind) {
   const std::span<const double> x = record.displacement;
   const double half = gap / 2;
-  const std::vector<Stroke> strokes = StrokesOf(x, record.reversals);
+  const std::vector<Stroke> strokes = StrokesOf(record);
   std::vector<double> ends;
   for (std::size_t s = 0; s < strokes.size(); ++s) {
     const std::size_t end = strokes[s].end;
@@ -195,7 +195,7 @@ std::vector<models::Turn> MoveBehindGap(const ScaledRecord& record,
 }  // namespace
 
 std::vector<models::Turn> TurnsOf(const ScaledRecord& record) {
-  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
+  const ScaledRecord& motion = record.motion();
   const std::span<const double> x = motion.excitation();
   const std::span<const double> time = motion.time;
   std::vector<models::Turn> turns;
@@ -235,7 +235,7 @@ double TurnBetweenSamples(ScaledRecords& data) {
 double LongestLag(std::size_t samples, std::size_t reversals) {
   constexpr double kSamples = 10.0;
   constexpr double kLongest = 0.2;
-  return std::clamp(kSamples / MeanCycleDuration({}, samples, reversals),
+  return std::clamp(kSamples / MeanCycleDuration(static_cast<double>(samples) - 1, reversals),
                     TermOf(TermId::kLag).highest, kLongest);
 }
 
@@ -243,8 +243,11 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   if (!HasTerm(options, TermId::kLag) || records.excitation == loop::Channel::kForce) return;
   const loop::PreparedRecord& first = records.records.front();
   const std::size_t reversals = first.reversals.size();
-  const double longest = LongestLag(first.size(), reversals) *
-                         MeanCycleDuration(first.record.time, first.size(), reversals);
+  const std::span<const double> its_time = first.record.time;
+  const double duration =
+      its_time.empty() ? static_cast<double>(first.size()) - 1 : its_time.back() - its_time.front();
+  const double longest =
+      LongestLag(first.size(), reversals) * MeanCycleDuration(duration, reversals);
   Interval lags{-longest, longest};
   if (options.bounds.contains("lag")) lags = options.bounds.at("lag");
   if (options.fixed.contains("lag")) lags = {options.fixed.at("lag"), options.fixed.at("lag")};

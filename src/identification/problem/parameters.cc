@@ -31,7 +31,7 @@ double StartingPeriod(const ScaledRecords& data) {
     std::vector<double> there;    // … and forces
     for (const ScaledRecord& record : data.records) {
       const std::vector<double>& x = record.displacement;
-      for (const Stroke& stroke : StrokesOf(x, record.reversals)) {
+      for (const Stroke& stroke : StrokesOf(record)) {
         const double middle = (x[stroke.begin] + x[stroke.end]) / 2;
         if (stroke.direction != direction) continue;
         for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {

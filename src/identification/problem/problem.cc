@@ -95,7 +95,7 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, const Sca
         if (!derivative) return is_sine ? std::sin(phase) : std::cos(phase);
         return phase * (is_sine ? -std::cos(phase) : std::sin(phase));
       });
-      const std::vector<double> direction = DirectionsOf(record.displacement, record.reversals);
+      const std::vector<double> direction = DirectionsOf(record);
       return ((is_up ? 1.0 : -1.0) * ArrayOf(direction) > 0).select(wave, 0.0);
     }
     default:
@@ -152,8 +152,7 @@ Response::Response(const Problem& problem)
   const std::vector<ScaledRecord>& records = problem.data->records;
   motions_.resize(records.size());
   for (const ScaledRecord& record : records) {
-    const bool is_part = Has(TermId::kLag) && record.whole != nullptr;
-    turns_.push_back(TurnsOf(is_part ? *record.whole : record));
+    turns_.push_back(TurnsOf(Has(TermId::kLag) ? record.motion() : record));
     models::LoadedHistory& history = histories_.emplace_back();
     if (record.load_ratio.empty() || !IsMasing(problem)) continue;
     history = models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,

@@ -266,12 +266,7 @@ bool ScaledRecord::BeginsOnLoop() const {
   return is_on_loop;
 }
 
-double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
-  const double whole = time.empty() ? static_cast<double>(samples) - 1 : time.back() - time.front();
-  return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
-}
-
-ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, const FitResult* fit,
+ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options,
                     const FitOptions* with) {
   LeaveOutBeyondLags(options, records);
   ScaledRecords scaled;
@@ -303,11 +298,10 @@ ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, c
     target.reversals = prepared.reversals;
     target.begins_at_turn = options.preparation.begins_at_turn;
     target.counts = prepared.counts;
-    target.turns_between = fit != nullptr && fit->records[scaled.records.size() - 1].turns_between;
     target.units = {.force = scaled.force,
                     .length = scaled.length,
                     .half_duration = duration > 0 ? duration / 2 : 1.0,
-                    .cycle = MeanCycleDuration(time, time.size(), prepared.reversals.size()),
+                    .cycle = MeanCycleDuration(duration, prepared.reversals.size()),
                     .force_sense = sense,
                     .force_reference = sense * force_reference,
                     .displacement_reference = ExtremesOf(displacement).middle()};
@@ -326,13 +320,13 @@ ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options, c
   return scaled;
 }
 
-std::vector<Stroke> StrokesOf(std::span<const double> excitation,
-                              std::span<const std::size_t> reversals) {
-  std::vector<Stroke> strokes(reversals.size() + 1);
+std::vector<Stroke> StrokesOf(const ScaledRecord& record) {
+  const std::span<const double> excitation = record.excitation();
+  std::vector<Stroke> strokes(record.reversals.size() + 1);
   for (std::size_t s = 0; s < strokes.size(); ++s) {
     Stroke& stroke = strokes[s];
-    stroke.begin = s > 0 ? reversals[s - 1] : 0;
-    stroke.end = s < reversals.size() ? reversals[s] : excitation.size() - 1;
+    stroke.begin = s > 0 ? strokes[s - 1].end : 0;
+    stroke.end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
     const double travel = excitation[stroke.end] - excitation[stroke.begin];
     stroke.direction = travel >= 0 ? 1.0 : -1.0;
     stroke.length = std::abs(travel);
@@ -341,7 +335,7 @@ std::vector<Stroke> StrokesOf(std::span<const double> excitation,
 }
 
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
-  std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+  std::vector<Stroke> strokes = StrokesOf(record);
   const double longest = std::ranges::max(strokes, {}, &Stroke::length).length;
   std::erase_if(strokes, [&](const Stroke& stroke) {
     return !(stroke.length > 0) || stroke.length < thresholds.main_stroke * longest;
@@ -349,10 +343,9 @@ std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& th
   return strokes;
 }
 
-std::vector<double> DirectionsOf(std::span<const double> excitation,
-                                 std::span<const std::size_t> reversals) {
+std::vector<double> DirectionsOf(const ScaledRecord& record) {
   std::vector<double> directions;
-  for (const Stroke& stroke : StrokesOf(excitation, reversals)) {
+  for (const Stroke& stroke : StrokesOf(record)) {
     directions.resize(stroke.end + 1, stroke.direction);
   }
   return directions;
@@ -367,7 +360,7 @@ ScaledRecords Thinned(const ScaledRecords& data) {
   std::size_t first = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
+    const std::vector<Stroke> strokes = StrokesOf(record);
     const std::size_t cycles = (strokes.size() + 1) / 2;
     std::vector<std::size_t> samples = {0};
     std::vector<std::size_t> turns;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 
@@ -62,6 +61,7 @@ struct ScaledRecord {
     return imposed == loop::Channel::kForce ? displacement : force;
   }
   [[nodiscard]] std::size_t size() const { return force.size(); }
+  [[nodiscard]] const ScaledRecord& motion() const { return whole != nullptr ? *whole : *this; }
 
   /// Returns the record's part of values of all samples, one record after the other.
   template <typename T>
@@ -79,8 +79,10 @@ inline std::span<double> SpanOf(Eigen::Ref<Eigen::VectorXd> column) {
 /// between fits mean nothing.
 inline constexpr double kRoundingRms = 1e-13;
 
-/// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.
-double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals);
+/// Returns the mean duration of a record's cycles, of two strokes each; 1 where it has none.
+inline double MeanCycleDuration(double duration, std::size_t reversals) {
+  return duration > 0 ? 2 * duration / static_cast<double>(reversals + 1) : 1.0;
+}
 
 /// Describes a column besides displacement and force that all records have.
 struct CovariateColumn {
@@ -132,10 +134,9 @@ struct ScaledRecords {
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 ///   more than 1e100, for loads that are not one for all or one a record, and positive, and where a
 ///   record has no covariate that is fitted, or it never changes, or is the force in other units
-/// @param fit   of the records, where there is one: they turn between samples as they do in it
 /// @param with  options for whose terms there are columns; null: for these
 ScaledRecords Scale(loop::PreparedRecords& records, const FitOptions& options,
-                    const FitResult* fit = nullptr, const FitOptions* with = nullptr);
+                    const FitOptions* with = nullptr);
 
 /// A stroke: from the record's beginning or a reversal to the next reversal or its end.
 struct Stroke {
@@ -144,15 +145,13 @@ struct Stroke {
   double direction = 1.0;  // +1 where the excitation grows, else −1
   double length = 0.0;     // of the change of the excitation, > 0 unless it rests
 };
-std::vector<Stroke> StrokesOf(std::span<const double> excitation,
-                              std::span<const std::size_t> reversals);
+std::vector<Stroke> StrokesOf(const ScaledRecord& record);
 
 /// Returns the strokes that are no shorter than `main_stroke` of the longest.
 std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
 
 /// Returns the direction of the stroke of each sample; a reversal is the last one's.
-std::vector<double> DirectionsOf(std::span<const double> excitation,
-                                 std::span<const std::size_t> reversals);
+std::vector<double> DirectionsOf(const ScaledRecord& record);
 
 /// Returns the records by fewer samples: all reversals, and of each stroke some, densest at its
 /// start: the same history for a law that knows no rate. The records given must outlive them.
