@@ -107,7 +107,7 @@ void Search(benchmark::State& state) {
   loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   const identification::ScaledRecords data = identification::Scale(prepared, options);
   const identification::Problem problem(data, options, models::InitialState::kSteady);
-  identification::Solver solver(problem);
+  identification::ProjectedResidual residual(problem);
   std::vector<std::vector<double>> starts;
   for (const campaign::Cycle& cycle : Cycles()) {
     const models::BranchLaw law = fitter.Continue(cycle.record, Depth::kEstimate).law;
@@ -124,7 +124,7 @@ void Search(benchmark::State& state) {
   for (auto _ : state) {
     for (const std::vector<double>& start : starts) {
       benchmark::DoNotOptimize(
-          solver.Solve(start, identification::SolverOptionsOf(options)).sum_of_squares);
+          Solve(residual, start, {.max_iterations = options.max_iterations}).sum_of_squares);
     }
   }
   CountCycles(state, starts.size());

@@ -24,7 +24,8 @@ std::vector<double> ThetaOf(const Problem& problem, const FitResult& fit) {
   for (const Parameter& parameter : problem.parameters) {
     const std::size_t p = theta.size();
     const ParameterEstimate* const fitted = fit.Find(problem.parameters.NameOf(p));
-    const bool stays = parameter.fixed || parameter.term->positive || parameter.is_exponent();
+    const bool stays =
+        parameter.fixed || parameter.term->positive || parameter.term->name.ends_with("_exponent");
     theta.push_back(fitted != nullptr               ? parameter.ToTheta(fitted->value)
                     : p == kRig && !parameter.fixed ? parameter.upper
                     : stays                         ? parameter.theta

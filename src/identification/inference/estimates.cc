@@ -195,7 +195,7 @@ double Estimates::FStatistic(std::size_t parameter, double sum_of_squares) const
 
 std::optional<double> ValueAtBound(const Parameter& parameter, BoundSide side) {
   if (IsSearchLimit(parameter, side)) return std::nullopt;
-  return parameter.ToValue(side == BoundSide::kLower ? parameter.lower : parameter.upper);
+  return parameter.ToValue(parameter.BoundOn(side));
 }
 
 Ends EndsWithinBounds(const Parameter& parameter, double from, double to) {

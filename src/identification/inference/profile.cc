@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "identification/solve/search.h"
+#include "identification/solve/solver.h"
 
 namespace mindahl::identification {
 namespace {
@@ -100,7 +100,7 @@ class HeldParameter {
   double At(double theta, std::vector<double> start) {
     start[parameter_] = theta;
     problem_.parameters.Fix(parameter_, theta);
-    solution_ = Solver(problem_).Solve(start, options_);
+    solution_ = Solve(problem_, start, options_);
     const double statistic = fitted_.FStatistic(parameter_, solution_.sum_of_squares);
     if (statistic <= fitted_.critical()) region_.push_back(solution_.theta);
     return statistic;
@@ -132,7 +132,7 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
   constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
   const auto may_be_far_from_slip = [&] {
     Region region;
-    const SolverOptions search = SolverOptionsOf(fitted.options());
+    const SolverOptions search{.max_iterations = fitted.options().max_iterations};
     return result.WidestRecord().facts.energy_ratio <= kHardly &&
            HeldParameter(fitted, kSlipForce, search, region).IsOpenAbove();
   };
@@ -161,8 +161,8 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
 Ends Profile(const Estimates& fitted, std::size_t parameter, Region& region) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
-  SolverOptions search = SolverOptionsOf(fitted.options());
-  search.is_rough = fitted.problem().parameters.free().size() > kMany;
+  const SolverOptions search{.max_iterations = fitted.options().max_iterations,
+                             .is_rough = fitted.problem().parameters.free().size() > kMany};
   HeldParameter held(fitted, parameter, search, region);
   const std::optional<double> lower = held.End(-1.0);
   const bool is_open = parameter == kSlipForce && held.IsOpenAbove();

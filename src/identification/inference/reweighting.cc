@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "identification/solve/search.h"
 #include "loop/statistics.h"
 
 namespace mindahl::identification {
@@ -76,10 +75,11 @@ class Reweighting {
     Eigen::ArrayXd step = Eigen::ArrayXd::Zero(force_.size());
     for (int round = 0; round < kMostRounds; ++round) {
       WeighByNoise(loss);
+      const SolverOptions search{.max_iterations = options_.max_iterations};
       if (loss != Loss::kNone) {
-        SolveByCeres(problem_, loss, unit_, SolverOptionsOf(options_), solution_);
+        SolveByCeres(problem_, loss, unit_, search, solution_);
       } else {
-        solution_ = Solver(problem_).Solve(solution_.theta, SolverOptionsOf(options_));
+        solution_ = Solve(problem_, solution_.theta, search);
       }
       const Eigen::ArrayXd last_force = force_;
       force_ = Predict(problem_, solution_.theta);

@@ -23,6 +23,9 @@ bool HasTerm(const FitOptions& options, TermId id);
 /// Refuses a term of the other channel.
 void RequirePlace(const Term& term, loop::Channel response);
 
+/// Says on which side of its bounds a parameter lies.
+enum class BoundSide { kInside, kLower, kUpper };
+
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
 ///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ
 struct Parameter {
@@ -58,11 +61,10 @@ struct Parameter {
   [[nodiscard]] double ToTheta(double value) const {
     return term->positive ? std::log(value / scale) : (value - reference) / scale;
   }
-  [[nodiscard]] bool is_exponent() const { return term->name.ends_with("_exponent"); }
+  [[nodiscard]] double BoundOn(BoundSide side) const {
+    return side == BoundSide::kLower ? lower : upper;
+  }
 };
-
-/// Says on which side of its bounds a parameter lies.
-enum class BoundSide { kInside, kLower, kUpper };
 
 /// The one definition of "at a bound": within 1e-9 of the bounds' distance, which counts as 1 to
 /// 1000. A parameter that is held lies inside.

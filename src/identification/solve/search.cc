@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "core/extremes.h"
 
@@ -57,10 +56,10 @@ double FarthestFrom(const Problem& problem, std::span<const double> theta) {
 
 /// Looks from θ of a look, whose α, origins and terms stay, and keeps what is found if it is
 /// better.
-void KeepBetter(Solver& solver, Look& best, Look look) {
+void KeepBetter(ProjectedResidual& residual, Look& best, Look look) {
   // Without slip nothing depends on the reach: of equals the last, nearest to slip.
   constexpr double kEqual = 1 + 1e-9;
-  const Problem& problem = solver.problem();
+  const Problem& problem = residual.problem();
   const Parameters& parameters = problem.parameters;
   const Parameter& stiffness = parameters[kStiffness];
   const Parameter& slip_force = parameters[kSlipForce];
@@ -89,7 +88,7 @@ void KeepBetter(Solver& solver, Look& best, Look look) {
     theta[kStiffness] = log_stiffness + log_slip_force;
     theta[kRig] = log_rig + log_slip_force;
   }
-  look.cost = solver.CostAt(theta);
+  look.cost = residual.EvaluateFreely(theta);
   if (!std::isfinite(look.cost)) return;
   if (!is_forced) {
     // Parameters that are held keep their values; the others follow from the ratios of the look.
@@ -118,10 +117,10 @@ std::vector<double> UnloadedAtFirst(const Problem& problem, std::vector<double> 
 
 /// Returns the best looks of those that compete: of one α, or where α is given of one third of the
 /// reaches; those that lead anywhere.
-std::vector<Look> BestLooks(Solver& solver) {
+std::vector<Look> BestLooks(ProjectedResidual& residual) {
   constexpr std::size_t kThirds = 3;
   constexpr double kNear = 4.0;
-  const Problem& problem = solver.problem();
+  const Problem& problem = residual.problem();
   const Parameter& shape = problem.parameters[kShape];
   std::vector<double> theta = problem.parameters.Theta();
   for (const std::size_t p : problem.parameters.free()) {
@@ -144,7 +143,7 @@ std::vector<Look> BestLooks(Solver& solver) {
       if (seen > 0 && !(reaches[i] > seen / kNear && reaches[i] < seen * kNear)) continue;
       Look& group = best[is_given ? i * kThirds / reaches.size() : k];
       for (const double ratio : ratios) {
-        KeepBetter(solver, group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
+        KeepBetter(residual, group, {.reach = reaches[i], .rig_ratio = ratio, .theta = theta});
       }
     }
   }
@@ -153,21 +152,21 @@ std::vector<Look> BestLooks(Solver& solver) {
 }
 
 /// Tries a look with lags, with which a loop looks like one of another shape.
-void LookForLag(Solver& solver, Look& best) {
+void LookForLag(ProjectedResidual& residual, Look& best) {
   constexpr std::size_t kLag = RowOf(TermId::kLag);
-  const Parameter& lag = solver.problem().parameters[kLag];
+  const Parameter& lag = residual.problem().parameters[kLag];
   if (lag.fixed) return;
   Look look = best;
   for (const double share : {-1.0, -0.6, -0.3, -0.15, -0.06, 0.06, 0.15, 0.3, 0.6, 1.0}) {
     look.theta[kLag] = share * (share < 0 ? -lag.lower : lag.upper);
-    KeepBetter(solver, best, look);
+    KeepBetter(residual, best, look);
   }
 }
 
 /// Searches from θ, and keeps the solution where it is better.
-void SearchOnce(std::span<const double> theta, const SolverOptions& options, Solver& solver,
-                Solution& best) {
-  Solution solution = solver.Solve(theta, options);
+void SearchOnce(std::span<const double> theta, const SolverOptions& options,
+                ProjectedResidual& residual, Solution& best) {
+  Solution solution = Solve(residual, theta, options);
   if (solution.sum_of_squares < best.sum_of_squares) best = std::move(solution);
 }
 
@@ -250,9 +249,9 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   const bool is_enough = thinned.counted >= kEnough * free.size();
   Problem thin = problem;
   if (is_enough && !has_covariate && !has_kinks) thin.data = &thinned;
-  Solver solver(thin);
-  std::vector<Look> looks = BestLooks(solver);
-  for (Look& look : looks) LookForLag(solver, look);
+  ProjectedResidual residual(thin);
+  std::vector<Look> looks = BestLooks(residual);
+  for (Look& look : looks) LookForLag(residual, look);
   std::ranges::stable_sort(looks, {}, &Look::cost);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(
@@ -265,7 +264,7 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
     }
     if (!options.start.empty()) continue;  // a start that is given is one
     const auto follow = [&](const std::vector<double>& theta, double share_of_cost) {
-      Solution solution = solver.Solve(theta, kRough);
+      Solution solution = Solve(residual, theta, kRough);
       if (!(solution.sum_of_squares < share_of_cost * start.cost)) return;
       start.theta = std::move(solution.theta);
       start.cost = solution.sum_of_squares;
@@ -282,10 +281,6 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thinned, const Fi
   if (looks.size() > most) looks.resize(most);
   for (Look& start : looks) candidate.starts.push_back(std::move(start.theta));
   return looks.empty() ? kNoCost : looks.front().cost;
-}
-
-SolverOptions SolverOptionsOf(const FitOptions& options) {
-  return {.max_iterations = options.max_iterations};
 }
 
 void AddStartsOfSmallerModels(Candidate& candidate, const ScaledRecords& thinned,
@@ -319,9 +314,9 @@ void Descend(Candidate& candidate, const FitOptions& options) {
   best = {.sum_of_squares = kNoCost};
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
-  Solver solver(candidate.problem);
+  ProjectedResidual residual(candidate.problem);
   for (const std::vector<double>& start : candidate.starts) {
-    SearchOnce(start, SolverOptionsOf(options), solver, best);
+    SearchOnce(start, {.max_iterations = options.max_iterations}, residual, best);
   }
 }
 
@@ -331,19 +326,19 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options) {
   constexpr int kMostRounds = 4;
   constexpr double kLower = 1 - 1e-6;
   constexpr int kSteps = 100;  // in which a way down shows
-  const SolverOptions search = SolverOptionsOf(options);
+  const SolverOptions search{.max_iterations = options.max_iterations};
   const SolverOptions look{.max_iterations = std::min(options.max_iterations, kSteps)};
-  Solver solver(candidate.problem);
+  ProjectedResidual residual(candidate.problem);
   double last = kNoCost;
   for (int round = 0; round < kMostRounds && best.sum_of_squares < last; ++round) {
     last = kLower * best.sum_of_squares;
     Solution lower = best;
     for (const std::vector<double>& theta : Neighbours(candidate.problem, best.theta)) {
-      SearchOnce(theta, look, solver, lower);
+      SearchOnce(theta, look, residual, lower);
     }
     if (lower.sum_of_squares < best.sum_of_squares) {
       best = lower;
-      SearchOnce(lower.theta, search, solver, best);
+      SearchOnce(lower.theta, search, residual, best);
     }
   }
 }

@@ -15,8 +15,6 @@ struct Candidate {
   Solution solution = {};
 };
 
-SolverOptions SolverOptionsOf(const FitOptions& options);
-
 /// Finds the candidate's starting points, best first, from the data or as the options give them.
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
 /// linear eliminated (docs/theory.md §12). The best look goes on to the minimum of the thinned

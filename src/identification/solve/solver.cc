@@ -10,7 +10,6 @@
 #include <limits>
 #include <utility>
 
-#include "identification/solve/projected_residual.h"
 #include "identification/solve/unprojected_residual.h"
 
 namespace mindahl::identification {
@@ -83,8 +82,28 @@ class TinySearch {
     }
   }
 
-  /// Searches from u, which it moves.
+  /// Searches from u, which it moves; again where the last step was damped too much.
   void Run(Eigen::VectorXd& u) {
+    double last_cost = 0.0;
+    do {
+      last_cost = at_.cost;
+      RunOnce(u);
+      iterations_ += std::max(tiny_.summary.iterations, 1);
+    } while (IsDamped() && at_.cost < last_cost && iterations_ < options_.max_iterations);
+  }
+
+  [[nodiscard]] double cost() const { return at_.cost; }
+  [[nodiscard]] int iterations() const { return iterations_; }
+  /// True if twenty steps together gained next to nothing, and it was left at that.
+  [[nodiscard]] bool is_slow() const { return is_slow_; }
+  [[nodiscard]] bool has_converged() const {
+    return std::isfinite(at_.cost) && tiny_.summary.status != Tiny::HIT_MAX_ITERATIONS;
+  }
+  /// True if the residual was evaluated where the run ended last.
+  [[nodiscard]] bool IsEvaluated() const { return at_.u == trial_.u; }
+
+ private:
+  void RunOnce(Eigen::VectorXd& u) {
     constexpr double kLargestRadius = 1e3;
     // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
     tiny_.options.gradient_tolerance = std::numeric_limits<double>::min();
@@ -103,23 +122,12 @@ class TinySearch {
     u = at_.u;
   }
 
-  // Results of the last run.
-  [[nodiscard]] double cost() const { return at_.cost; }
-  [[nodiscard]] int iterations() const { return std::max(tiny_.summary.iterations, 1); }
-  /// True if twenty steps together gained next to nothing, and it was left at that.
-  [[nodiscard]] bool is_slow() const { return is_slow_; }
-  [[nodiscard]] bool has_converged() const {
-    return std::isfinite(at_.cost) && tiny_.summary.status != Tiny::HIT_MAX_ITERATIONS;
-  }
-  /// True if the last step gained next to nothing of what was left to gain: it was damped too much.
-  [[nodiscard]] bool is_damped() const {
+  /// True if the last step gained next to nothing of what was left to gain.
+  [[nodiscard]] bool IsDamped() const {
     return tiny_.summary.status == Tiny::COST_CHANGE_TOO_SMALL &&
            compressed_.Explained() > std::max(kLastStep, options_.function_tolerance) * at_.cost;
   }
-  /// True if the residual was evaluated where the run ended last.
-  [[nodiscard]] bool IsEvaluated() const { return at_.u == trial_.u; }
 
- private:
   struct Function {
     using Scalar = double;
     // NOLINTNEXTLINE(readability-identifier-naming): what TinySolver asks for
@@ -146,7 +154,7 @@ class TinySearch {
   /// Coordinates within their bounds.
   struct Point {
     Eigen::VectorXd u;
-    double cost = 0.0;
+    double cost = std::numeric_limits<double>::infinity();
   };
 
   [[nodiscard]] Point Within(const Eigen::VectorXd& x) const {
@@ -210,7 +218,8 @@ class TinySearch {
   CompressedResidual compressed_;  // at the accepted one
   bool is_last_ = false;           // is the next accepted step the last one?
   bool is_slow_ = false;
-  int accepted_ = 0;          // points
+  int iterations_ = 0;        // of all runs
+  int accepted_ = 0;          // points of the last one
   double cost_before_ = 0.0;  // at the last one at which the progress was looked at
 };
 
@@ -262,30 +271,26 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
   solution.report.iterations += static_cast<int>(summary.iterations.size());
 }
 
+namespace {
+
 /// Moves u to the minimum, and returns the solution but for θ.
-Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
-  Solution solution;
-  SolverReport& report = solution.report;
-  report.solver = "tiny_solver";
+Solution SearchFrom(Eigen::VectorXd& u, const SolverOptions& options, ProjectedResidual& residual) {
   // A third of the steps is left to the second opinion.
   SolverOptions of_tiny = options;
   if (!options.is_rough) of_tiny.max_iterations -= options.max_iterations / 3;
-  TinySearch search(residual_, of_tiny);
-  double cost = std::numeric_limits<double>::infinity();
-  double last_cost = cost;
-  do {
-    last_cost = cost;
-    search.Run(u);
-    cost = search.cost();
-    report.iterations += search.iterations();
-  } while (search.is_damped() && cost < last_cost && report.iterations < of_tiny.max_iterations);
-  solution.converged = search.has_converged();
+  TinySearch search(residual, of_tiny);
+  search.Run(u);
+  double cost = search.cost();
+  Solution solution{.converged = search.has_converged()};
+  SolverReport& report = solution.report;
+  report.solver = "tiny_solver";
+  report.iterations = search.iterations();
   report.termination = solution.converged ? "CONVERGENCE" : "NO_CONVERGENCE";
   report.message = !std::isfinite(cost) ? "The residuals at the start are not finite."
                    : solution.converged ? "The search came to its end."
                                         : "The solver made its maximum number of iterations.";
   bool is_evaluated = search.IsEvaluated();
-  const auto side_of = [&](Eigen::Index j) { return SideOf(residual_.Searched(j), u[j]); };
+  const auto side_of = [&](Eigen::Index j) { return SideOf(residual.Searched(j), u[j]); };
   bool is_at_bound = false;
   for (Eigen::Index j = 0; j < u.size(); ++j) is_at_bound |= side_of(j) != BoundSide::kInside;
   const int left = options.max_iterations - report.iterations;
@@ -294,13 +299,13 @@ Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
     constexpr int kOfOneSearch = 10;  // iterations by Ceres
     SolverOptions within_bounds = options;
     within_bounds.max_iterations = kOfOneSearch * left;
-    residual_.Evaluate(u);
-    Solution within{.theta = residual_.Theta(), .report = report};
-    SolveByCeres(residual_.problem(), Loss::kNone, 1.0, within_bounds, within);
+    residual.Evaluate(u);
+    Solution within{.theta = residual.Theta(), .report = report};
+    SolveByCeres(residual.problem(), Loss::kNone, 1.0, within_bounds, within);
     report = within.report;
     solution.converged = solution.converged || within.converged;
-    const Eigen::VectorXd point = residual_.SearchedOf(within.theta);
-    const double cost_within = residual_.Evaluate(point);
+    const Eigen::VectorXd point = residual.SearchedOf(within.theta);
+    const double cost_within = residual.Evaluate(point);
     is_evaluated = cost_within < cost;
     if (is_evaluated) {
       u = point;
@@ -310,30 +315,37 @@ Solution Solver::SearchFrom(Eigen::VectorXd& u, const SolverOptions& options) {
   for (Eigen::Index j = 0; j < u.size(); ++j) {  // at a bound is on it
     const BoundSide side = side_of(j);
     if (side == BoundSide::kInside) continue;
-    const Parameter& searched = residual_.Searched(j);
-    const double bound = side == BoundSide::kLower ? searched.lower : searched.upper;
+    const double bound = residual.Searched(j).BoundOn(side);
     is_evaluated = std::exchange(u[j], bound) == bound && is_evaluated;
   }
-  if (!is_evaluated) cost = residual_.Evaluate(u);
-  solution.sum_of_squares = cost;
+  solution.sum_of_squares = is_evaluated ? cost : residual.Evaluate(u);
   return solution;
 }
 
-Solution Solver::Solve(std::span<const double> start, const SolverOptions& options) {
-  Eigen::VectorXd u = residual_.SearchedOf(start);
+}  // namespace
+
+Solution Solve(ProjectedResidual& residual, std::span<const double> start,
+               const SolverOptions& options) {
+  Eigen::VectorXd u = residual.SearchedOf(start);
   Solution solution;
   if (u.size() > 0) {
-    solution = SearchFrom(u, options);
+    solution = SearchFrom(u, options, residual);
   } else {
-    solution = {.sum_of_squares = residual_.Evaluate(u),
+    solution = {.sum_of_squares = residual.Evaluate(u),
                 .converged = true,
                 .report = {.termination = "CONVERGENCE",
                            .message = "Every parameter that is not linear is fixed."}};
   }
-  solution.theta = residual_.Theta();
+  solution.theta = residual.Theta();
   solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
   return solution;
+}
+
+Solution Solve(const Problem& problem, std::span<const double> start,
+               const SolverOptions& options) {
+  ProjectedResidual residual(problem);
+  return Solve(residual, start, options);
 }
 
 }  // namespace mindahl::identification

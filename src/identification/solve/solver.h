@@ -45,23 +45,11 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 /// - ceres::TinySolver where the solution lies inside the bounds;
 /// - ceres::Solve with the bounds, from there on, where a coordinate ends at one, and wherever
 ///   TinySolver does not converge. The lower of the two costs is kept.
-/// Searches of one solver share the basis of the eliminated columns and the buffers.
-class Solver {
- public:
-  /// @param problem  must outlive this; neither it nor the weights of its samples may change
-  explicit Solver(const Problem& problem) : residual_(problem) {}
-
-  [[nodiscard]] const Problem& problem() const { return residual_.problem(); }
-  /// Least cost with the ratios of θ, and all that is linear eliminated (projected_residual.h).
-  double CostAt(std::span<double> theta) { return residual_.EvaluateFreely(theta); }
-
-  /// @param start  θ, moved into the bounds
-  Solution Solve(std::span<const double> start, const SolverOptions& options);
-
- private:
-  Solution SearchFrom(Eigen::VectorXd& u, const SolverOptions& options);
-
-  ProjectedResidual residual_;
-};
+/// @param residual  searches of one share the basis of the eliminated columns and the buffers
+/// @param start     θ, moved into the bounds
+Solution Solve(ProjectedResidual& residual, std::span<const double> start,
+               const SolverOptions& options);
+/// The same by a residual of its own.
+Solution Solve(const Problem& problem, std::span<const double> start, const SolverOptions& options);
 
 }  // namespace mindahl::identification
