@@ -40,16 +40,16 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   const Parameters& parameters = problem->parameters;
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    CeresParameter& value = values.emplace_back(
-        CeresParameter{.name = parameters.NameOf(p),
-                       .unit = parameters.UnitOf(p, !data.records.front().velocity.empty()),
-                       .theta = parameter.theta,
-                       .lower = parameter.lower,
-                       .upper = parameter.upper,
-                       .fixed = parameter.fixed,
-                       .positive = parameter.term->positive,
-                       .reference = parameter.reference,
-                       .scale = parameter.scale});
+    values.push_back({.name = parameters.NameOf(p),
+                      .unit = parameters.UnitOf(p),
+                      .theta = parameter.theta,
+                      .lower = parameter.lower,
+                      .upper = parameter.upper,
+                      .fixed = parameter.fixed,
+                      .positive = parameter.term->positive,
+                      .reference = parameter.reference,
+                      .scale = parameter.scale});
+    CeresParameter& value = values.back();
     const ParameterEstimate* const estimate = fit.Find(value.name);
     if (estimate == nullptr || parameter.fixed) continue;
     value.theta = std::clamp(value.ThetaAt(estimate->value), value.lower, value.upper);

@@ -30,12 +30,11 @@ std::optional<double> Finite(std::optional<double> end) {
 
 std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& solution) {
   const Parameters& parameters = problem.parameters;
-  const bool timed = !problem.data->records.front().velocity.empty();
   std::vector<ParameterEstimate> values;
   for (const std::size_t p : parameters.reported()) {
     ParameterEstimate& estimate = values.emplace_back();
     estimate.name = parameters.NameOf(p);
-    estimate.unit = parameters.UnitOf(p, timed);
+    estimate.unit = parameters.UnitOf(p);
     estimate.value = parameters[p].ToValue(solution.theta[p]);
     estimate.status = StatusOf(parameters[p], solution.theta[p]);
   }

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <vector>
+#include <ranges>
 
+#include "core/extremes.h"
 #include "core/refuse.h"
 #include "identification/problem/motion.h"
 #include "mindahl/core/error.h"
@@ -121,12 +119,11 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   parameter.absent = is(Presence::kNever) || (is(Presence::kLoadSeries) && !all.is_load_series) ||
                      (is(Presence::kOnDemand) && !is_asked_for && !term.of_column);
   parameter.fixed = parameter.absent;
-  if (is(Presence::kOffsets) && !options.offsets) Hold(parameter, 0.0);
-  if (is(Presence::kReported) && !is_asked_for) Hold(parameter, 0.0);
-  if (is(Presence::kOffsets) && options.offsets && !data.Turns()) {
+  if ((is(Presence::kOffsets) && !options.offsets) || (is(Presence::kReported) && !is_asked_for)) {
+    Hold(parameter, 0.0);
+  } else if (is(Presence::kOffsets) && !data.Turns()) {
     HoldOrigin(data, options, parameter);
-  }
-  if (is(Presence::kOnDemand) && is_asked_for) {
+  } else if (is(Presence::kOnDemand) && is_asked_for) {
     parameter.theta =
         term.id == TermId::kRipplePeriod ? std::log(StartingPeriod(all)) : term.start.value_or(0.0);
   }
@@ -180,8 +177,7 @@ void KeepAboveLoops(const ScaledRecords& data, Parameter& slip_force) {
   constexpr double kShortOfSlip = 1e-9;
   if (slip_force.fixed) return;
   for (const ScaledRecord& record : data.records) {
-    const auto [low, high] = std::ranges::minmax(record.excitation());
-    const double least = std::log((high - low) / 2) + kShortOfSlip;
+    const double least = std::log(ExtremesOf(record.excitation()).half_range()) + kShortOfSlip;
     if (!(least > slip_force.lower)) continue;
     slip_force.lower = std::min(least, slip_force.upper);
     slip_force.theta = std::max(slip_force.theta, slip_force.lower);
@@ -224,7 +220,9 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
                        models::InitialState initial_state)
-    : records_(data.records.size()), excitation_(data.excitation) {
+    : records_(data.records.size()),
+      is_timed_(!data.records.front().velocity.empty()),
+      excitation_(data.excitation) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   const bool is_steady = initial_state == models::InitialState::kSteady;
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
@@ -287,11 +285,11 @@ std::string Parameters::NameOf(std::size_t i) const {
                      : std::string(parameter.term->name);
 }
 
-std::string Parameters::UnitOf(std::size_t i, bool timed) const {
+std::string Parameters::UnitOf(std::size_t i) const {
   const Term& term = *parameters_[i].term;
   const std::string_view of_column = parameters_[i].covariate.unit;
   if (!of_column.empty()) return fmt::format("N/{}", of_column);
-  return std::string(timed || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
+  return std::string(is_timed_ || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
 }
 
 Parameter& Parameters::Find(std::string_view name, std::string_view what) {
@@ -379,9 +377,8 @@ void Parameters::ApplyGuesses(const FitOptions& options, double prior_noise) {
 }
 
 std::vector<double> Parameters::Theta() const {
-  std::vector<double> theta;
-  for (const Parameter& parameter : parameters_) theta.push_back(parameter.theta);
-  return theta;
+  const auto theta = parameters_ | std::views::transform(&Parameter::theta);
+  return {theta.begin(), theta.end()};
 }
 
 double Parameters::PriorCost(std::span<const double> theta) const {

@@ -122,8 +122,8 @@ class Parameters {
   /// Returns the name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
 
-  /// Returns the unit of its value: by sample where `timed` is false, and a column's own.
-  [[nodiscard]] std::string UnitOf(std::size_t i, bool timed) const;
+  /// Returns the unit of its value: by sample where records have no time, and a column's own.
+  [[nodiscard]] std::string UnitOf(std::size_t i) const;
 
   /// Holds one more parameter at θ.
   void Fix(std::size_t i, double theta);
@@ -147,7 +147,8 @@ class Parameters {
   std::vector<Parameter> parameters_;
   std::vector<std::size_t> free_;
   std::vector<std::size_t> reported_;
-  std::size_t records_ = 1;
+  std::size_t records_;
+  bool is_timed_;
   loop::Channel excitation_;
 };
 

@@ -1,7 +1,6 @@
 #include "identification/problem/problem.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -207,7 +206,7 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
         {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
     if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
   } else if (motion.paths.size() > 1) {
-    EvaluateBehindGap(law, motion, t, columns);
+    EvaluateBehindGap(law, motion, t, GradientOf(columns));
   } else {
     models::EvaluateNormalizedForce(*problem_.model, law, path,
                                     moved.empty() ? record.displacement : moved, t,
@@ -228,26 +227,23 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
 }
 
 void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,
-                                 std::span<double> t, const ResponseColumns& columns) {
-  constexpr std::array kOfPath = {TermId::kSigma, TermId::kAlpha, TermId::kDisplacementOffset,
-                                  TermId::kRigStiffness, TermId::kAsymmetry};
-  Eigen::MatrixXd storage = Eigen::MatrixXd::Zero(std::ssize(t), 1 + std::ssize(kOfPath));
-  const std::span<double> forces = SpanOf(storage.col(0));
-  ResponseColumns of_side;
+                                 std::span<double> t, const models::NormalizedGradient& gradient) {
+  Eigen::MatrixXd storage = Eigen::MatrixXd::Zero(std::ssize(t), models::kParameters + 1);
+  const std::span<double> forces = SpanOf(storage.col(models::kParameters));
+  models::NormalizedGradient of_side;
   std::ranges::fill(t, 0.0);  // while the gap is crossed
-  for (Eigen::Index k = 1; const TermId id : kOfPath) {
-    std::ranges::fill(columns[id], 0.0);
-    if (!columns[id].empty()) of_side[id] = SpanOf(storage.col(k++));
+  for (std::size_t k = 0; k < gradient.size(); ++k) {
+    std::ranges::fill(gradient[k], 0.0);
+    if (!gradient[k].empty()) of_side[k] = SpanOf(storage.col(static_cast<Eigen::Index>(k)));
   }
   for (const double sign : {-1.0, 1.0}) {
     const auto& [displacement, path] = motion.paths[sign > 0 ? 0 : 1];
-    models::EvaluateNormalizedForce(*problem_.model, law, path, displacement, forces,
-                                    GradientOf(of_side));
+    models::EvaluateNormalizedForce(*problem_.model, law, path, displacement, forces, of_side);
     for (std::size_t i = 0; i < t.size(); ++i) {
       if (!(sign * forces[i] >= 0)) continue;
       t[i] = forces[i];
-      for (const TermId id : kOfPath) {
-        if (!columns[id].empty()) columns[id][i] = of_side[id][i];
+      for (std::size_t k = 0; k < gradient.size(); ++k) {
+        if (!gradient[k].empty()) gradient[k][i] = of_side[k][i];
       }
     }
   }

@@ -80,7 +80,7 @@ class Response {
   void EvaluatePath(std::span<const double> theta, std::size_t record, std::span<double> t,
                     const ResponseColumns& columns);
   void EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,
-                         std::span<double> t, const ResponseColumns& columns);
+                         std::span<double> t, const models::NormalizedGradient& gradient);
   /// Multiplies t and its derivatives by the slip force at each sample, where it varies, and adds
   /// the drag.
   void ScaleBySlipForce(const ScaledRecord& record, std::span<const double> theta,

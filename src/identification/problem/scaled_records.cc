@@ -156,6 +156,15 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
   }
 }
 
+/// Returns the column of a name in a record.
+const loop::Covariate& CovariateOf(const loop::PreparedRecords& records, std::size_t r,
+                                   std::string_view name) {
+  const std::span<const loop::Covariate> all = records.records[r].record.covariates;
+  const auto found = std::ranges::find(all, name, &loop::Covariate::name);
+  if (found != all.end()) return *found;
+  Refuse<InvalidArgument>("record {} has no covariate '{}'", r + 1, name);
+}
+
 /// Adds the columns that terms need beyond those of every fit, and covariates.
 void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
                 ScaledRecords& data) {
@@ -173,30 +182,22 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
     }
   }
   for (const std::string& name : options.covariates) {
-    std::vector<const loop::Covariate*> columns;
     double scale = 0.0;
-    for (const loop::PreparedRecord& record : records.records) {
-      const auto& all = record.record.covariates;
-      const auto found = std::ranges::find(all, name, &loop::Covariate::name);
-      if (found == all.end()) {
-        Refuse<InvalidArgument>("record {} has no covariate '{}'", columns.size() + 1, name);
-      }
-      columns.push_back(&*found);
-      scale = std::max(scale, ExtremesOf(found->values).half_range());
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      scale = std::max(scale, ExtremesOf(CovariateOf(records, r, name).values).half_range());
     }
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
-    const std::size_t own = data.covariates.size();
-    data.covariates.push_back({columns.front()->name, columns.front()->unit, scale});
+    const loop::Covariate& first = CovariateOf(records, 0, name);
+    data.covariates.push_back({first.name, first.unit, scale});
+    bool is_force = !options.fixed.contains(NameOfCovariate(name));
     for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const double reference_value =
-          options.offsets ? ExtremesOf(columns[r]->values).middle() : 0.0;
-      data.records[r].covariates.push_back(Scaled(columns[r]->values, reference_value, scale));
+      ScaledRecord& record = data.records[r];
+      const std::span<const double> values = CovariateOf(records, r, name).values;
+      const double middle = options.offsets ? ExtremesOf(values).middle() : 0.0;
+      const auto& column = record.covariates.emplace_back(Scaled(values, middle, scale));
+      is_force = is_force && AreOneChannel(column, record.force);
     }
-    if (options.fixed.contains(NameOfCovariate(name))) continue;
-    const auto is_force = [own](const ScaledRecord& record) {
-      return AreOneChannel(record.covariates[own], record.force);
-    };
-    if (!std::ranges::all_of(data.records, is_force)) continue;
+    if (!is_force) continue;
     Refuse<InvalidArgument>(
         "the covariate '{}' is a linear function of 'force', one channel with it: "
         "leave it out",

@@ -7,12 +7,21 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr double kLowestStiffness = 1e-6;
-constexpr double kHighestStiffness = 1e9;
 // Below it the force is as good as a slip force.
 constexpr double kLeastSpeedExponent = 0.2;
 // Below it (v/v₀)^m − 1 is m·ln(v/v₀) within a tenth over two decades of speed.
 constexpr double kLeastSlipSpeedExponent = 0.05;
+
+constexpr Term Stiffness(std::string_view name, std::string_view meaning, Presence presence) {
+  return {.name = name,
+          .unit = "N/m",
+          .meaning = meaning,
+          .presence = presence,
+          .positive = true,
+          .lowest = 1e-6,
+          .highest = 1e9,
+          .powers = {.force = 1, .length = -1}};
+}
 
 /// Makes the factor of a force in addition to the contact's.
 constexpr Term Factor(std::string_view name, std::string_view unit, std::string_view meaning,
@@ -51,14 +60,7 @@ constexpr Term Exponent(std::string_view name, std::string_view meaning, std::st
 /// Bounds are in units of the data (half ranges of displacement and force), far outside what a
 /// record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a line.
 constexpr std::array kTermRows = {
-    Term{.name = "sigma",
-         .unit = "N/m",
-         .meaning = "σ, tangential stiffness at the start of every branch",
-         .presence = Presence::kAlways,
-         .positive = true,
-         .lowest = kLowestStiffness,
-         .highest = kHighestStiffness,
-         .powers = {.force = 1, .length = -1}},
+    Stiffness("sigma", "σ, tangential stiffness at the start of every branch", Presence::kAlways),
     Term{.name = "alpha",
          .meaning = "α, shape exponent",
          .presence = Presence::kAlways,
@@ -73,13 +75,7 @@ constexpr std::array kTermRows = {
          .lowest = 1e-3,
          .highest = 1e4,
          .powers = {.force = 1}},
-    Term{.name = "rig_stiffness",
-         .unit = "N/m",
-         .meaning = "k of a spring in series, δ = x + T/k",
-         .positive = true,
-         .lowest = kLowestStiffness,
-         .highest = kHighestStiffness,
-         .powers = {.force = 1, .length = -1}},
+    Stiffness("rig_stiffness", "k of a spring in series, δ = x + T/k", Presence::kOnDemand),
     Term{.name = "load_exponent",
          .meaning = "p of σ ∝ N^p, for records whose loads differ",
          .presence = Presence::kLoadSeries,
