@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 
 namespace mindahl {
@@ -11,6 +12,7 @@ struct Extremes {
 
   [[nodiscard]] double half_range() const { return greatest / 2 - least / 2; }
   [[nodiscard]] double middle() const { return least + half_range(); }
+  [[nodiscard]] double largest_magnitude() const { return std::max(greatest, -least); }
 };
 
 /// Returns the least and greatest of values that are no NaN, at least one.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/draws.h"
+#include "core/extremes.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
@@ -129,8 +130,7 @@ ValidationReport ValidateMapping(const ValidationOptions& options) {
     const Case drawn = DrawCase(index, draws);
     const loop::Record clean = MindlinRecord(drawn);
     const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
-    const auto [least, greatest] = std::ranges::minmax(clean.force);
-    const double peak = std::max(-least, greatest);
+    const double peak = ExtremesOf(clean.force).largest_magnitude();
     for (std::size_t place = index % kLambdas.size(); place < report.rows.size();
          place += kLambdas.size()) {
       ValidationRow& row = report.rows[place];

@@ -8,14 +8,10 @@
 #include <ranges>
 #include <utility>
 
+#include "core/extremes.h"
 #include "core/refuse.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
-#include "identification/problem/problem.h"
-#include "identification/problem/scaled_records.h"
-#include "identification/solve/solver.h"
-#include "mindahl/core/error.h"
-#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 
@@ -78,8 +74,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol) {
                             Response(problem).LinearizeAt(theta, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
-  result.peak_force =
-      std::ranges::max(record.force | std::views::transform([](double f) { return std::abs(f); }));
+  result.peak_force = ExtremesOf(record.force).largest_magnitude();
   result.parameters = ValuesOf(problem, solution);
   for (std::size_t k = 0; k < result.parameters.size(); ++k) {
     estimates.Fill(problem.parameters.reported()[k], result.parameters[k]);

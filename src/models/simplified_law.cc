@@ -23,11 +23,10 @@ void EvaluateSimplifiedDahl(const BranchLaw& law, std::span<const double> displa
   }
   if (displacement.empty()) return;
   if (envelope.empty()) {
-    const auto [lowest, highest] = ExtremesOf(displacement);
     const LoadingPath path =
         MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), Memory::kNone, {});
-    EvaluateForce(*FindFrictionModel("dahl"), DahlEquivalent(law, std::max(highest, -lowest)), path,
-                  displacement, force);
+    const BranchLaw equivalent = DahlEquivalent(law, ExtremesOf(displacement).largest_magnitude());
+    EvaluateForce(*FindFrictionModel("dahl"), equivalent, path, displacement, force);
     return;
   }
   RequireSameSize("displacement", displacement.size(), "envelope", envelope.size());

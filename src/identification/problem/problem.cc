@@ -218,12 +218,10 @@ void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::s
   // The difference is one-sided, towards a longer lag or a wider gap: at zero the response has a
   // kink.
   constexpr double kStep = 1e-7;  // by which the difference is rounded to 1e-9 of the slip force
-  Motion here = std::exchange(motions_[r], {});
   std::vector<double> beside(theta.begin(), theta.end());
   beside[moves_] += kStep;
   EvaluatePath(beside, r, by_amount, {});
   for (std::size_t i = 0; i < t.size(); ++i) by_amount[i] = (by_amount[i] - t[i]) / kStep;
-  motions_[r] = std::move(here);
 }
 
 void Response::EvaluateBehindGap(const models::NormalizedLaw& law, const Motion& motion,

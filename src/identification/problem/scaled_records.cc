@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "core/extremes.h"
@@ -71,9 +68,8 @@ std::vector<double> DerivativeOf(const std::vector<double>& values, const Scaled
 /// ln of the speeds with their resolution; far below any speed, and finite, where there is none.
 void FillLogSpeed(ScaledRecord& record) {
   const double resolution = loop::NoiseByDifferences(record.velocity, 4);
-  const auto [lowest, highest] = ExtremesOf(record.velocity);
   constexpr double kStandstill = 1e-12;  // of the largest speed
-  const double fastest = std::max(-lowest, highest);
+  const double fastest = ExtremesOf(record.velocity).largest_magnitude();
   const double least = fastest > 0 ? kStandstill * fastest : 1.0;
   for (const double speed : record.velocity) {
     record.log_speed.push_back(std::log(std::max(std::hypot(speed, resolution), least)));
@@ -220,8 +216,9 @@ ScaledRecord SomeOf(const ScaledRecord& record, std::span<const std::size_t> sam
     take(some.*column, record.*column);
   }
   take(some.counts, record.counts);
-  for (std::size_t c = 0; c < record.covariates.size(); ++c)
+  for (std::size_t c = 0; c < record.covariates.size(); ++c) {
     take(some.covariates[c], record.covariates[c]);
+  }
   return some;
 }
 
