@@ -69,8 +69,8 @@ double LargestErrorOfLateContact(Wave wave, int samples_a_cycle) {
     const double step = scaled.time[1] - scaled.time[0];
     for (std::size_t late = 0; late < 2 * kFine; late += 3) {
       Motion motion;
-      Locate(scaled, TurnsOf(scaled), ContactMotion::kLate,
-             step * static_cast<double>(late) / kFine, models::Memory::kReturnPoint, {}, motion);
+      Locate(scaled, TurnsOf(scaled), TermId::kLag, step * static_cast<double>(late) / kFine,
+             models::Memory::kReturnPoint, {}, motion);
       const std::vector<double>& contact = motion.paths.front().displacement;
       for (std::size_t i = kEnd; i + kEnd < contact.size(); ++i) {
         const double at = contact[i] * stages.data.length + scaled.units.displacement_reference;

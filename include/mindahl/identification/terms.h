@@ -43,13 +43,6 @@ struct TermScale {
   bool of_file = false;  ///< with the force's sign in the file
 };
 
-/// Says where the contact is at the time of a force.
-enum class ContactMotion {
-  kMeasured,   ///< at the displacement, behind a rig's spring
-  kLate,       ///< at the displacement of an earlier time
-  kBehindGap,  ///< at the displacement less what a gap takes of it
-};
-
 /// The rows of the table, in their order, which is the order of the parameters of a fit.
 enum class TermId : std::size_t {
   kSigma,
@@ -108,7 +101,6 @@ struct Term {
   std::string_view shapes = {};
   /// Name of the term without which this one cannot be fitted; empty: none.
   std::string_view needs = {};
-  ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
   /// The default bound is the theory's: Jenkins' α, no gap. At the others a search is cut short.
   bool lowest_is_of_theory = false;
   bool highest_is_of_theory = false;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -273,20 +272,20 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   }
 }
 
-void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, ContactMotion kind,
-            double amount, models::Memory memory, const models::InitialContact& initial,
-            Motion& motion) {
+void Locate(const ScaledRecord& record, std::span<const models::Turn> turns,
+            std::optional<TermId> moved_by, double amount, models::Memory memory,
+            const models::InitialContact& initial, Motion& motion) {
   motion.amount = amount;
   motion.initial = initial;
-  motion.paths.resize(kind == ContactMotion::kBehindGap ? 2 : 1);
-  if (kind == ContactMotion::kMeasured) {
+  motion.paths.resize(moved_by == TermId::kBacklash ? 2 : 1);
+  if (!moved_by) {
     models::MakeLoadingPath(record.excitation(), turns, memory, initial, motion.paths.front().path);
     return;
   }
   for (double side = 1.0; auto& [displacement, path] : motion.paths) {
     displacement.clear();
     const std::vector<models::Turn> moved =
-        kind == ContactMotion::kLate
+        moved_by == TermId::kLag
             ? MoveLate(record, turns, amount, displacement)
             : MoveBehindGap(record, turns, amount, side, initial, displacement);
     side = -1.0;

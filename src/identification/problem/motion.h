@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "identification/problem/scaled_records.h"
@@ -47,10 +48,11 @@ struct Motion {
 };
 
 /// Locates a contact; reuses the memory of `motion`.
-/// @param turns   of the record's motion; of a lag those of the whole record
-/// @param amount  a lag in the record's scaled time, or the width of a gap
-void Locate(const ScaledRecord& record, std::span<const models::Turn> turns, ContactMotion kind,
-            double amount, models::Memory memory, const models::InitialContact& initial,
-            Motion& motion);
+/// @param turns     of the record's motion; of a lag those of the whole record
+/// @param moved_by  the lag or the backlash; empty where the contact is at the displacement
+/// @param amount    a lag in the record's scaled time, or the width of a gap
+void Locate(const ScaledRecord& record, std::span<const models::Turn> turns,
+            std::optional<TermId> moved_by, double amount, models::Memory memory,
+            const models::InitialContact& initial, Motion& motion);
 
 }  // namespace mindahl::identification

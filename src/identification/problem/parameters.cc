@@ -78,7 +78,7 @@ double ThetaOf(const Parameter& parameter, std::string_view name, double value) 
   if (term.id == TermId::kAsymmetry && !(std::abs(value) < 1)) {
     ThrowInvalid(quantity, value, "must be in (-1, 1)");
   }
-  if (term.motion == ContactMotion::kBehindGap && !(value < 2 * parameter.scale)) {
+  if (term.id == TermId::kBacklash && !(value < 2 * parameter.scale)) {
     ThrowInvalid(quantity, value, "must be below the range of the displacement");
   }
   RequireNearUnit(parameter, quantity, value, term.positive);
@@ -144,7 +144,7 @@ void RequireTerms(const ScaledRecords& data, const Parameters& parameters) {
     if (!term.needs.empty() && parameters[parameters.PositionOf(FindTerm(term.needs)->id)].absent) {
       Refuse<InvalidArgument>("{} needs {}: add it", term.name, term.needs);
     }
-    if (p > moving && term.motion != ContactMotion::kMeasured) {
+    if (p > moving && MovesContact(term.id)) {
       Refuse<InvalidArgument>("{} and {} cannot be in one fit: leave one of them out",
                               parameters[moving].term->name, term.name);
     }
@@ -272,7 +272,7 @@ std::size_t Parameters::PositionOf(TermId id, std::size_t record) const {
 
 std::size_t Parameters::PositionOfMotion() const {
   const auto moves = [](const Parameter& parameter) {
-    return !parameter.absent && parameter.term->motion != ContactMotion::kMeasured;
+    return !parameter.absent && MovesContact(parameter.term->id);
   };
   return static_cast<std::size_t>(std::ranges::find_if(parameters_, moves) - parameters_.begin());
 }

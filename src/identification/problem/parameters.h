@@ -88,6 +88,9 @@ constexpr TermId OriginId(loop::Channel excitation) {
   return excitation == loop::Channel::kForce ? TermId::kForceOffset : TermId::kDisplacementOffset;
 }
 
+/// True of a term that moves the contact away from the displacement at the time of the force.
+constexpr bool MovesContact(TermId id) { return id == TermId::kLag || id == TermId::kBacklash; }
+
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
  public:
@@ -115,8 +118,8 @@ class Parameters {
   /// Returns the place of the contact's term, or of a record's; size() without any covariate.
   [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record = 0) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
-  /// Returns the place of the term that moves the contact away from the displacement at the time of
-  /// the force, of which there is one at most; size() where there is none.
+  /// Returns the place of the term that moves the contact, of which there is one at most; size()
+  /// where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
 
   /// Returns the name in options and results, numbered where there are several records.

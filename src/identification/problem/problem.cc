@@ -167,19 +167,20 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
       .unloaded_displacement = problem_.is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
       .turns_at_first = record.begins_at_turn,
       .asymmetry = IsMasing(problem_) ? theta[kAsymmetry] : 0.0};
-  ContactMotion kind = ContactMotion::kMeasured;
+  std::optional<TermId> moved_by;
   double amount = 0.0;
   if (moves_ < parameters.size()) {
     const Parameter& moves = parameters[moves_];
-    kind = moves.term->motion;
+    moved_by = moves.term->id;
     amount = moves.ToValue(theta[moves_]) /
-             (kind == ContactMotion::kLate ? record.units.half_duration : record.units.length);
+             (moved_by == TermId::kLag ? record.units.half_duration : record.units.length);
   }
   Motion& motion = motions_[r];
   const bool is_there = !motion.paths.empty() && motion.amount == amount &&
                         motion.initial.unloaded_displacement == initial.unloaded_displacement &&
                         motion.initial.asymmetry == initial.asymmetry;
-  if (!is_there) Locate(record, turns_[r], kind, amount, problem_.model->memory, initial, motion);
+  if (is_there) return motion;
+  Locate(record, turns_[r], moved_by, amount, problem_.model->memory, initial, motion);
   return motion;
 }
 

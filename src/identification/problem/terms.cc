@@ -159,7 +159,6 @@ constexpr std::array kTermRows = {
          .lowest = -0.05,
          .highest = 0.05,
          .powers = {.cycle = 1},
-         .motion = ContactMotion::kLate,
          .unit_by_sample = "samples"},
     Term{
         .name = "backlash",
@@ -168,7 +167,6 @@ constexpr std::array kTermRows = {
         .lowest = 0.0,
         .highest = 1.0,  // half of a stroke
         .powers = {.length = 1},
-        .motion = ContactMotion::kBehindGap,
         .lowest_is_of_theory = true},
     Term{.name = "covariate",
          .unit = "N/unit",
