@@ -10,7 +10,6 @@
 #include "identification/problem/problem.h"
 #include "identification/solve/unprojected_residual.h"
 #include "identification/solved_fit.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 

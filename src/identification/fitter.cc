@@ -156,13 +156,14 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   }
   result.initial_state = problem.initial_state;
   result.solver = solution.report;
-  result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {
     result.findings.push_back(
         {.code = "not_converged", .severity = Severity::kFailure, .kind = "failed"});
     return result;
   }
   result.converged = solution.converged && solved.is_settled;
+  result.solver.final_cost =
+      solution.sum_of_squares / 2 * (data.response_unit() * data.response_unit());
   if (!solved.is_settled) {
     result.solver.termination = "NO_CONVERGENCE";
     result.solver.message = "The weights of the samples did not settle.";

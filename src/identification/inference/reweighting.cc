@@ -130,7 +130,6 @@ class Reweighting {
   Noise Finish() {
     solution_.sum_of_squares =
         (weights_ * Residual()).square().sum() + problem_.parameters.PriorCost(solution_.theta);
-    solution_.report.final_cost = solution_.sum_of_squares / 2;
     if (drawn_ != nullptr) noise_.drawn = weights_.matrix().asDiagonal() * errors_;
     return std::move(noise_);
   }

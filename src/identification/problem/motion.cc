@@ -8,7 +8,6 @@
 
 #include "core/refuse.h"
 #include "identification/problem/parameters.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 namespace {

@@ -9,7 +9,6 @@
 #include "core/extremes.h"
 #include "core/refuse.h"
 #include "identification/problem/motion.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 

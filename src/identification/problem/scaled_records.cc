@@ -12,7 +12,6 @@
 #include "identification/problem/motion.h"
 #include "identification/problem/parameters.h"
 #include "loop/statistics.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 

@@ -337,7 +337,6 @@ Solution Solve(ProjectedResidual& residual, std::span<const double> start,
                            .message = "Every parameter that is not linear is fixed."}};
   }
   solution.theta = residual.Theta();
-  solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
   return solution;
 }

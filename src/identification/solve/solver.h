@@ -27,7 +27,7 @@ struct Solution {
   std::vector<double> theta = {};  // of all parameters
   double sum_of_squares = 0.0;     // weighted
   bool converged = false;
-  SolverReport report = {};  // costs in units of the data
+  SolverReport report = {};  // without its cost
 };
 
 /// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
