@@ -54,8 +54,7 @@ std::vector<Finding> FindUnknownPast(const Estimates& fitted, const FitResult& r
   constexpr double kFar = 0.5;
   const Problem& problem = fitted.problem();
   const Thresholds& thresholds = fitted.thresholds();
-  const bool is_virgin_masing =
-      problem.is_virgin() && result.model->memory == models::Memory::kReturnPoint;
+  const bool is_virgin_masing = problem.is_virgin() && problem.is_masing();
   bool is_told = false;  // by one record
   bool is_cut = true;    // every record begins inside a stroke: none shows the slope at rest
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {

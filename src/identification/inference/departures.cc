@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "identification/problem/scaled_records.h"
-#include "mindahl/models/friction_model.h"
 
 namespace mindahl::identification {
 
@@ -73,9 +72,8 @@ std::vector<Place> PlacesOf(const Problem& problem, std::span<const double> thet
                             double held_readings) {
   const ScaledRecords& data = *problem.data;
   const bool is_forced = data.is_forced();
-  const bool tells_asymmetry = problem.is_virgin() &&
-                               problem.model->memory == models::Memory::kReturnPoint &&
-                               !data.load_varies && !is_forced;
+  const bool tells_asymmetry =
+      problem.is_virgin() && problem.is_masing() && !data.load_varies && !is_forced;
   Eigen::VectorXd contact(static_cast<Eigen::Index>(problem.size()));  // its response
   const std::span<double> of_contact(contact.data(), problem.size());
   std::vector<double> by_asymmetry(problem.size());

@@ -29,12 +29,6 @@ models::NormalizedLaw LawUnder(const Problem& problem, std::span<const double> t
           .spring_travel = problem.parameters.has_rig() ? std::exp(log_travel) : 0.0};
 }
 
-/// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
-/// Dahl's own reads both from its state z, that of a joint (models/joint_friction.h).
-bool IsMasing(const Problem& problem) {
-  return problem.model->memory == models::Memory::kReturnPoint;
-}
-
 /// Puts the force in the place of the state z, and its derivatives in the place of those of z.
 void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<double> t,
                       const ResponseColumns& columns) {
@@ -153,7 +147,7 @@ Response::Response(const Problem& problem)
   for (const ScaledRecord& record : records) {
     turns_.push_back(TurnsOf(Has(TermId::kLag) ? record.motion() : record));
     models::LoadedHistory& history = histories_.emplace_back();
-    if (record.load_ratio.empty() || !IsMasing(problem)) continue;
+    if (record.load_ratio.empty() || !problem.is_masing()) continue;
     history = models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                                         problem.initial_state);
   }
@@ -166,7 +160,7 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
       .state = problem_.initial_state,
       .unloaded_displacement = problem_.is_virgin() ? theta[parameters.PositionOfOrigin(r)] : 0.0,
       .turns_at_first = record.begins_at_turn,
-      .asymmetry = IsMasing(problem_) ? theta[kAsymmetry] : 0.0};
+      .asymmetry = problem_.is_masing() ? theta[kAsymmetry] : 0.0};
   std::optional<TermId> moved_by;
   double amount = 0.0;
   if (moves_ < parameters.size()) {
@@ -187,14 +181,14 @@ const Motion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
 models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) const {
   return {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kDisplacementOffset],
           columns[TermId::kRigStiffness],
-          IsMasing(problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
+          problem_.is_masing() ? columns[TermId::kAsymmetry] : std::span<double>()};
 }
 
 void Response::EvaluatePath(std::span<const double> theta, std::size_t r, std::span<double> t,
                             const ResponseColumns& columns) {
   const ScaledRecord& record = problem_.data->records[r];
   const models::NormalizedLaw law = LawUnder(problem_, theta, record);
-  if (!record.load_ratio.empty() && IsMasing(problem_)) {
+  if (!record.load_ratio.empty() && problem_.is_masing()) {
     models::EvaluateNormalizedForce(
         law, histories_[r], theta[problem_.parameters.PositionOfOrigin(r)], t, GradientOf(columns));
     return;
@@ -256,7 +250,7 @@ void Response::Evaluate(std::span<const double> theta, std::span<double> t,
     const ResponseColumns parts = columns.Of(record);
     const std::span<double> values = record.Of(t);
     EvaluatePath(theta, r, values, parts);
-    if (!IsMasing(problem_) && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
+    if (!problem_.is_masing() && (!record.load_ratio.empty() || Has(TermId::kAsymmetry))) {
       ReadForceOfJoint(record, theta[kAsymmetry], values, parts);
     }
     ScaleBySlipForce(record, theta, values, parts);

@@ -27,6 +27,9 @@ struct Problem {
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }
   [[nodiscard]] bool is_virgin() const { return initial_state == models::InitialState::kVirgin; }
+  /// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
+  /// Dahl's own reads both from its state z, that of a joint (models/joint_friction.h).
+  [[nodiscard]] bool is_masing() const { return model->memory == models::Memory::kReturnPoint; }
 
   const ScaledRecords* data;
   const models::FrictionModel* model;

@@ -118,12 +118,13 @@ double ProjectedResidual::Evaluate(const Eigen::VectorXd& u) {
 double ProjectedResidual::EvaluateFreely(std::span<double> theta) {
   response_.Evaluate(theta, SpanOf(response_values_));
   double cost = Regress(theta);
-  const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
+  const bool is_forced = problem_.data->is_forced();
+  const std::size_t of_scale = is_forced ? kStiffness : kSlipForce;
   const Parameter& parameter = problem_.parameters[of_scale];
   if (!parameter.fixed) {
     const double best = response_values_.dot(measured_) / response_values_.squaredNorm();
     if (!(best > 0)) return std::numeric_limits<double>::infinity();
-    const double log_scale = is_forced() ? theta[kSlipForce] - std::log(best) : std::log(best);
+    const double log_scale = is_forced ? theta[kSlipForce] - std::log(best) : std::log(best);
     theta[of_scale] = parameter.Clamp(log_scale);
     cost = ScaleTo(theta);
   }

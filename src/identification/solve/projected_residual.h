@@ -51,7 +51,6 @@ class ProjectedResidual {
   void SolveLinear(std::span<double> theta) const;
   double Regress(std::span<const double> theta);
   double ScaleTo(std::span<const double> theta);
-  [[nodiscard]] bool is_forced() const { return problem_.data->is_forced(); }
 
   const Problem& problem_;
   Response response_;
