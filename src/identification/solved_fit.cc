@@ -131,8 +131,9 @@ void TryTurnsBetweenSamples(const Attempt& attempt, Candidate& candidate) {
   const double farthest = TurnBetweenSamples(attempt.data);
   const double shift = farthest * std::exp(solution.theta[kStiffness]);
   if (shift > kMatters * (std::sqrt(solution.sum_of_squares) / samples)) {
-    Solution between = Solve(candidate.problem, solution.theta,
-                             {.max_iterations = attempt.options.max_iterations});
+    ProjectedResidual residual(candidate.problem);
+    Solution between =
+        Solve(residual, solution.theta, {.max_iterations = attempt.options.max_iterations});
     const double ratio = between.sum_of_squares / solution.sum_of_squares;
     const double rate = std::exp(between.theta[kStiffness] - between.theta[kSlipForce]);
     if (farthest * rate < 1 && samples * std::log(ratio) < kClearly) {

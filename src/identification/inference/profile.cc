@@ -100,7 +100,8 @@ class HeldParameter {
   double At(double theta, std::vector<double> start) {
     start[parameter_] = theta;
     problem_.parameters.Fix(parameter_, theta);
-    solution_ = Solve(problem_, start, options_);
+    ProjectedResidual residual(problem_);
+    solution_ = Solve(residual, start, options_);
     const double statistic = fitted_.FStatistic(parameter_, solution_.sum_of_squares);
     if (statistic <= fitted_.critical()) region_.push_back(solution_.theta);
     return statistic;

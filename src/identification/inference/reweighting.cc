@@ -79,7 +79,8 @@ class Reweighting {
       if (loss != Loss::kNone) {
         SolveByCeres(problem_, loss, unit_, search, solution_);
       } else {
-        solution_ = Solve(problem_, solution_.theta, search);
+        ProjectedResidual residual(problem_);
+        solution_ = Solve(residual, solution_.theta, search);
       }
       const Eigen::ArrayXd last_force = force_;
       force_ = Predict(problem_, solution_.theta);

@@ -223,56 +223,6 @@ class TinySearch {
   double cost_before_ = 0.0;  // at the last one at which the progress was looked at
 };
 
-}  // namespace
-
-std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
-  if (loss == Loss::kHuber) return std::make_unique<ceres::HuberLoss>(1.345);
-  if (loss == Loss::kCauchy) return std::make_unique<ceres::CauchyLoss>(2.385);
-  if (loss == Loss::kTukey) return std::make_unique<ceres::TukeyLoss>(4.685);
-  return nullptr;
-}
-
-void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
-                  Solution& solution) {
-  std::vector<double>& theta = solution.theta;
-  ceres::Problem ceres_problem;
-  const auto block_of = [&](std::size_t p) { return &theta[p]; };
-  AddResidualBlock(problem, scale, LossOf(loss), block_of, ceres_problem);
-  for (std::size_t p = 0; p < theta.size(); ++p) {
-    const Parameter& parameter = problem.parameters[p];
-    if (parameter.has_prior()) {
-      const Eigen::MatrixXd root =
-          Eigen::MatrixXd::Constant(1, 1, parameter.prior_root_weight / scale);
-      const Eigen::VectorXd prior = Eigen::VectorXd::Constant(1, parameter.prior_theta);
-      ceres_problem.AddResidualBlock(new ceres::NormalPrior(root, prior), nullptr, &theta[p]);
-    }
-    BoundBlock(&theta[p], parameter.fixed, parameter.lower, parameter.upper, ceres_problem);
-  }
-  ceres::Solver::Options search;
-  search.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  search.max_num_iterations = options.max_iterations;
-  search.function_tolerance = options.function_tolerance;
-  search.parameter_tolerance = options.parameter_tolerance;
-  // The gradient has no scale of its own, so that only one of zero ends a search.
-  search.gradient_tolerance = std::numeric_limits<double>::min();
-  // Next to a bound Ceres would search along every step, with twenty evaluations or more. Without
-  // that its steps end no higher, though they are more.
-  search.max_num_line_search_step_size_iterations = 0;
-  search.logging_type = ceres::SILENT;
-  // Steps that lead nowhere shrink the trust region until it ends the search; that they are many
-  // Ceres would print as an error.
-  search.max_num_consecutive_invalid_steps = options.max_iterations;
-  ceres::Solver::Summary summary;
-  ceres::Solve(search, &ceres_problem, &summary);
-  solution.converged = summary.termination_type == ceres::CONVERGENCE;
-  solution.report.solver = "solve";
-  solution.report.termination = ceres::TerminationTypeToString(summary.termination_type);
-  solution.report.message = summary.message;
-  solution.report.iterations += static_cast<int>(summary.iterations.size());
-}
-
-namespace {
-
 /// Moves u to the minimum, and returns the solution but for θ.
 Solution SearchFrom(Eigen::VectorXd& u, const SolverOptions& options, ProjectedResidual& residual) {
   // A third of the steps is left to the second opinion.
@@ -324,6 +274,52 @@ Solution SearchFrom(Eigen::VectorXd& u, const SolverOptions& options, ProjectedR
 
 }  // namespace
 
+std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
+  if (loss == Loss::kHuber) return std::make_unique<ceres::HuberLoss>(1.345);
+  if (loss == Loss::kCauchy) return std::make_unique<ceres::CauchyLoss>(2.385);
+  if (loss == Loss::kTukey) return std::make_unique<ceres::TukeyLoss>(4.685);
+  return nullptr;
+}
+
+void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
+                  Solution& solution) {
+  std::vector<double>& theta = solution.theta;
+  ceres::Problem ceres_problem;
+  const auto block_of = [&](std::size_t p) { return &theta[p]; };
+  AddResidualBlock(problem, scale, LossOf(loss), block_of, ceres_problem);
+  for (std::size_t p = 0; p < theta.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    if (parameter.has_prior()) {
+      const Eigen::MatrixXd root =
+          Eigen::MatrixXd::Constant(1, 1, parameter.prior_root_weight / scale);
+      const Eigen::VectorXd prior = Eigen::VectorXd::Constant(1, parameter.prior_theta);
+      ceres_problem.AddResidualBlock(new ceres::NormalPrior(root, prior), nullptr, &theta[p]);
+    }
+    BoundBlock(&theta[p], parameter.fixed, parameter.lower, parameter.upper, ceres_problem);
+  }
+  ceres::Solver::Options search;
+  search.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  search.max_num_iterations = options.max_iterations;
+  search.function_tolerance = options.function_tolerance;
+  search.parameter_tolerance = options.parameter_tolerance;
+  // The gradient has no scale of its own, so that only one of zero ends a search.
+  search.gradient_tolerance = std::numeric_limits<double>::min();
+  // Next to a bound Ceres would search along every step, with twenty evaluations or more. Without
+  // that its steps end no higher, though they are more.
+  search.max_num_line_search_step_size_iterations = 0;
+  search.logging_type = ceres::SILENT;
+  // Steps that lead nowhere shrink the trust region until it ends the search; that they are many
+  // Ceres would print as an error.
+  search.max_num_consecutive_invalid_steps = options.max_iterations;
+  ceres::Solver::Summary summary;
+  ceres::Solve(search, &ceres_problem, &summary);
+  solution.converged = summary.termination_type == ceres::CONVERGENCE;
+  solution.report.solver = "solve";
+  solution.report.termination = ceres::TerminationTypeToString(summary.termination_type);
+  solution.report.message = summary.message;
+  solution.report.iterations += static_cast<int>(summary.iterations.size());
+}
+
 Solution Solve(ProjectedResidual& residual, std::span<const double> start,
                const SolverOptions& options) {
   Eigen::VectorXd u = residual.SearchedOf(start);
@@ -339,12 +335,6 @@ Solution Solve(ProjectedResidual& residual, std::span<const double> start,
   solution.theta = residual.Theta();
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
   return solution;
-}
-
-Solution Solve(const Problem& problem, std::span<const double> start,
-               const SolverOptions& options) {
-  ProjectedResidual residual(problem);
-  return Solve(residual, start, options);
 }
 
 }  // namespace mindahl::identification

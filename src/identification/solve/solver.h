@@ -49,7 +49,5 @@ void SolveByCeres(const Problem& problem, Loss loss, double scale, const SolverO
 /// @param start     θ, moved into the bounds
 Solution Solve(ProjectedResidual& residual, std::span<const double> start,
                const SolverOptions& options);
-/// The same by a residual of its own.
-Solution Solve(const Problem& problem, std::span<const double> start, const SolverOptions& options);
 
 }  // namespace mindahl::identification
