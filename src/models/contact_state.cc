@@ -64,6 +64,8 @@ ContactState::Course ContactState::Enter(double displacement) const {
     }
   }
   next.shape = ShapeOn(next.branch);
+  next.start = direction * next.branch.origin;
+  next.rise = direction * next.branch.height;
   return next;
 }
 
@@ -82,11 +84,10 @@ double ContactState::Shape::TranscendentalForce(double y) const {
 }
 
 double ContactState::TangentStiffness() const {
-  const ScaledBranch& branch = course_.branch;
-  const double y = branch.Normalize(displacement_ - branch.origin);
+  const double y = course_.Reduced(displacement_);
   const double slope =
       std::visit([y](const auto& shape) { return shape.Slope(y); }, course_.shape.kind);
-  return law_.slip_force * (branch.height * branch.rate * slope);
+  return law_.slip_force * (course_.branch.height * course_.branch.rate * slope);
 }
 
 }  // namespace mindahl::models

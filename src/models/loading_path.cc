@@ -109,12 +109,6 @@ class OpenBranches {
 
 }  // namespace
 
-void RequireWithinReach(std::string_view quantity, double displacement) {
-  if (!(std::abs(displacement) <= kLargestPathDisplacement)) {
-    ThrowInvalid(quantity, displacement, "must be finite and within +-1e100 m");
-  }
-}
-
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {

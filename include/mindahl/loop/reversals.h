@@ -28,7 +28,11 @@ class ReversalFinder {
       return std::nullopt;
     }
     const double along = sense_ * displacement;
-    if (along > extreme_) Go(sense_, i, displacement);
+    if (along > extreme_) {
+      extreme_ = along;
+      place_ = i;
+      return std::nullopt;
+    }
     if (!(extreme_ - along > gate_)) return std::nullopt;
     const std::size_t turn = place_;
     Go(-sense_, i, displacement);

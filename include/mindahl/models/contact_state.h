@@ -42,8 +42,9 @@ class ContactState {
   /// Error as of EvaluateForce. Cost: 1.1 times a sample of EvaluateForce, 2 times where that is
   /// vectorised (bench/contact_state_bench.cc). Memory: 32 bytes an extreme that is remembered.
   double Move(double displacement) {
-    if (!HoldsTo(displacement)) Turn(displacement);
+    if (!course_.HoldsTo(displacement)) Turn(displacement);
     displacement_ = displacement;
+    course_.ahead = course_.direction * displacement;
     force_over_slip_ = course_.ForceAt(displacement);
     return Force();
   }
@@ -51,7 +52,7 @@ class ContactState {
   /// Returns or throws what Move(δ) would, without moving. Costs as much as Move; but each Peek
   /// that would close n loops examines all n again.
   [[nodiscard]] double Peek(double displacement) const {
-    if (HoldsTo(displacement)) return Force(course_.ForceAt(displacement));
+    if (course_.HoldsTo(displacement)) return Force(course_.ForceAt(displacement));
     return Force(Enter(displacement).ForceAt(displacement));
   }
 
@@ -90,24 +91,31 @@ class ContactState {
     [[nodiscard]] double TranscendentalForce(double y) const;
   };
 
-  /// A branch as it is run in one direction.
+  /// A branch as it is run in one direction s, in which sgn(e) = s.
   struct Course {
     ScaledBranch branch;
     Shape shape{};
     double direction = 0.0;  // s = ±1; 0 before any motion
+    double start = 0.0;      // s·origin
+    double ahead = 0.0;      // s·δ, of the present displacement
     double end = 0.0;        // s times the displacement before which the branch holds
+    double rise = 0.0;       // s·height
     std::size_t open = 1;    // branches, with this one
 
+    /// True if a displacement is neither a reversal, nor beyond the end, nor NaN.
+    [[nodiscard]] bool HoldsTo(double displacement) const {
+      const double there = direction * displacement;
+      return there >= ahead && there < end;
+    }
+    /// Returns y.
+    [[nodiscard]] double Reduced(double displacement) const {
+      return branch.rate * (direction * displacement - start);
+    }
     [[nodiscard]] double ForceAt(double displacement) const {
-      return branch.ForceAt(displacement, shape);
+      return branch.force + rise * shape.Force(Reduced(displacement));
     }
   };
 
-  /// True if a displacement is neither a reversal, nor beyond the branch's end, nor NaN.
-  [[nodiscard]] bool HoldsTo(double displacement) const {
-    const double ahead = course_.direction * displacement;
-    return ahead >= course_.direction * displacement_ && ahead < course_.end;
-  }
   [[nodiscard]] double Force(double force_over_slip) const {
     return law_.slip_force * std::clamp(force_over_slip, -1.0, 1.0);
   }

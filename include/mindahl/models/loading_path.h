@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 
 namespace mindahl::models {
@@ -62,7 +63,10 @@ struct ScaledBranch {
 inline constexpr double kLargestPathDisplacement = 1e100;
 
 /// @throws InvalidArgument unless the displacement [m] can be part of a path
-void RequireWithinReach(std::string_view quantity, double displacement);
+inline void RequireWithinReach(std::string_view quantity, double displacement) {
+  if (std::abs(displacement) <= kLargestPathDisplacement) return;
+  ThrowInvalid(quantity, displacement, "must be finite and within +-1e100 m");
+}
 
 /// Successive samples on one branch: [begin, end).
 struct BranchRun {
