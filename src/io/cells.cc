@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <system_error>
@@ -61,35 +60,29 @@ bool IsBlankOrComment(std::string_view line) {
 }
 
 std::string_view CellCursor::Take() {
-  const auto is_delimiter = [this](char character) {
-    return character == delimiter_ || (delimiter_ == kBlanks && character == '\t');
-  };
-  const std::size_t begin = rest_.find_first_not_of(delimiter_ == '\t' ? " \r" : " \t\r");
-  rest_.remove_prefix(std::min(begin, rest_.size()));
-  const char* end = std::ranges::find_if(rest_, is_delimiter);
-  std::string_view cell = Trimmed({rest_.begin(), end});
-  if (rest_.starts_with('"')) {
-    unescaped_.clear();
-    is_open_ = true;
-    for (end = rest_.begin() + 1; end != rest_.end() && (is_open_ || !is_delimiter(*end)); ++end) {
-      if (is_open_ && *end == '"') {
-        is_open_ = end + 1 != rest_.end() && end[1] == '"';
-        if (!is_open_) continue;
-        ++end;
-      }
-      unescaped_ += *end;
-    }
-    cell = is_open_ ? unescaped_.insert(0, 1, '"') : Trimmed(unescaped_);
+  at_ = SkipBlanks(at_);
+  const char* end = at_;
+  if (at_ == end_ || *at_ != '"') {
+    while (end != end_ && !IsDelimiter(*end)) ++end;
+    const std::string_view cell = Trimmed({at_, end});
+    GoBehind(end);
+    return cell;
   }
-  has_next_ = end != rest_.end();
-  rest_ = {end + (has_next_ ? 1 : 0), rest_.end()};
-  return cell;
+  unescaped_.clear();
+  is_open_ = true;
+  for (++end; end != end_ && (is_open_ || !IsDelimiter(*end)); ++end) {
+    if (is_open_ && *end == '"') {
+      is_open_ = end + 1 != end_ && end[1] == '"';
+      if (!is_open_) continue;
+      ++end;
+    }
+    unescaped_ += *end;
+  }
+  GoBehind(end);
+  return is_open_ ? unescaped_.insert(0, 1, '"') : Trimmed(unescaped_);
 }
 
 Cell ReadCell(std::string_view text, char decimal_mark) {
-  // Most cells are plain numbers, not "nan".
-  const auto number = decimal_mark == '.' ? NumberIn<double>(text) : std::nullopt;
-  if (number && std::isfinite(*number)) return {.kind = Cell::Kind::kNumber, .value = *number};
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string plain(text.substr(text.front() == '+' ? 1 : 0));
   const auto with_point = [](char sign) { return sign == ',' ? '.' : sign == '.' ? ',' : sign; };

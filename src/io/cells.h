@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -27,8 +28,11 @@ inline constexpr char kBlanks = ' ';
 /// empty cell.
 class CellCursor {
  public:
-  CellCursor(std::string_view row, char delimiter)
-      : rest_(delimiter == kBlanks ? Trimmed(row) : row), delimiter_(delimiter) {}
+  CellCursor(std::string_view row, char delimiter) : delimiter_(delimiter) {
+    if (delimiter == kBlanks) row = Trimmed(row);
+    at_ = row.data();
+    end_ = at_ + row.size();
+  }
 
   /// True if there is a further cell.
   [[nodiscard]] bool has_next() const { return has_next_; }
@@ -38,9 +42,38 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
+  /// Takes the next cell if it is a number with a decimal point and no sign of plus; returns false
+  /// and takes nothing where it is none.
+  bool TakeNumber(double& value) {
+    const char* const begin = SkipBlanks(at_);
+    const char* digits = begin;
+    if (digits != end_ && *digits == '-') ++digits;
+    if (digits != end_ && *digits == '.') ++digits;
+    if (digits == end_ || *digits < '0' || *digits > '9') return false;  // nor "nan"
+    const auto [stop, error] = std::from_chars(begin, end_, value);
+    const char* const after = delimiter_ == kBlanks ? stop : SkipBlanks(stop);
+    if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return false;
+    GoBehind(after);
+    return true;
+  }
+
  private:
-  std::string_view rest_;
+  [[nodiscard]] bool IsDelimiter(char character) const {
+    return character == delimiter_ || (delimiter_ == kBlanks && character == '\t');
+  }
+  [[nodiscard]] const char* SkipBlanks(const char* at) const {
+    while (at != end_ && (*at == ' ' || *at == '\r' || (*at == '\t' && delimiter_ != '\t'))) ++at;
+    return at;
+  }
+  /// @param delimiter  at the end of a cell, or of the row
+  void GoBehind(const char* delimiter) {
+    has_next_ = delimiter != end_;
+    at_ = !has_next_ ? end_ : delimiter_ == kBlanks ? SkipBlanks(delimiter) : delimiter + 1;
+  }
+
   char delimiter_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;
   bool has_next_ = true;
   bool is_open_ = false;
   std::string unescaped_;

@@ -381,17 +381,20 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
 
 void TableReader::ReadRow(std::string_view row) {
   const std::vector<bool>& is_wanted = layout_.is_wanted;
+  const bool has_points = layout_.decimal_mark == '.';
   table_.lines.push_back(line_);
   CellCursor cells(row, layout_.delimiter);
   std::size_t column = 0;
   std::size_t excess = 0;  // the first column that the table has not
   for (; cells.has_next(); ++column) {
-    const std::string_view cell = cells.Take();
-    if (column >= is_wanted.size()) {
-      if (!cell.empty() && excess == 0) excess = column;
-    } else if (is_wanted[column]) {
-      table_.columns[column].values.push_back(Number(column, cell));
+    if (column >= is_wanted.size() || !is_wanted[column]) {
+      const bool has_content = !cells.Take().empty();
+      if (has_content && column >= is_wanted.size() && excess == 0) excess = column;
+      continue;
     }
+    double value = 0.0;
+    if (!has_points || !cells.TakeNumber(value)) value = ReadText(column, cells.Take());
+    table_.columns[column].values.push_back(value);
   }
   // A column that is not used may be absent.
   while (column < is_wanted.size() && !is_wanted[column]) ++column;
@@ -422,8 +425,8 @@ std::string TableReader::NoNumber(std::size_t column, std::string_view text) con
                                 ForMessage(text), layout_.decimal_mark));
 }
 
-/// Returns the value of a cell, and notes what is at fault with it.
-double TableReader::Number(std::size_t column, std::string_view text) {
+/// Returns the value of a cell that is not plainly a number.
+double TableReader::ReadText(std::size_t column, std::string_view text) {
   const Cell cell = ReadCell(text, layout_.decimal_mark);
   Column& of = table_.columns[column];
   of.is_clock = of.is_clock || cell.is_clock;

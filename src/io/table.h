@@ -72,7 +72,7 @@ class TableReader {
 
  private:
   void ReadRow(std::string_view row);
-  double Number(std::size_t column, std::string_view text);
+  double ReadText(std::size_t column, std::string_view text);
   bool IsText(std::string_view row);
   void EndText();
   void Break(const std::string& fault, std::size_t column);
