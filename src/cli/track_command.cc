@@ -157,12 +157,14 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   std::string figures;
   std::size_t count = 0;
-  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
-  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
-  for (const io::PlotPanel& panel : panels) {
+  for (const io::PlotPanel& panel : campaign::EvolutionPanels(test.evolutions)) {
     figures += report::FigureHtml(
         fmt::format("evolution-{}", ++count), panel.y_label,
         "Dashed lines are steps beyond chance, and where the quantity settled.", panel);
+  }
+  if (test.log.size() > 1) {
+    figures += report::FigureHtml("loops", "Loops", "Measured, of the cycles in the legend.",
+                                  campaign::FrettingLog(test.log, test.is_torsional));
   }
   const bool is_steady = changes.empty() && test.cycles_without == 0;
   const char* const word = is_steady ? "steady" : changes.empty() ? "incomplete" : "changed";

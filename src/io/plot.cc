@@ -25,7 +25,7 @@ constexpr std::string_view kStyle =
     "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
     ".grid{stroke:#e4e4e4}.axis,.mark{stroke:#444}"
     ".s0{color:#c2334a}.s1{color:#2f6ea5}.s2{color:#3a9d6e}"
-    ".s3{color:#8d6bb1}.s4{color:#e09f3e}.s5{color:#5f6b76}"
+    ".s3{color:#8d6bb1}.s4{color:#e09f3e}.s5{color:#5f6b76}.s6{color:#6b3410}"
     ".h0{color:#440154}.h1{color:#46327e}.h2{color:#365c8d}.h3{color:#277f8e}"
     ".h4{color:#1fa187}.h5{color:#4ac16d}.h6{color:#8fb52d}.h7{color:#c2a50a}";
 constexpr double kCharacter = 9.6;  // [px] on a narrow screen, where letters are larger
@@ -257,7 +257,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   constexpr double kLeft = 76;              // of labels of common length
   constexpr double kSymbol = 34;            // of a legend
   constexpr std::size_t kLeastPoints = 64;  // of each of many series
-  constexpr int kColours = 6;               // classes s0 … s5
+  constexpr int kColours = 7;               // classes s0 … s6
   constexpr double kLastShade = 7;          // classes h0 … h7
   if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
   Values all_x, all_y;
@@ -281,7 +281,7 @@ Drawing DrawPanel(const PlotPanel& panel, double width, std::size_t most_points)
   int place = -1;  // of a series in the order of colours
   for (const PlotSeries& series : panel.series) {
     if (!series.shade && (place < 0 || !series.label.empty())) ++place;
-    // In these it differs from others, beyond the first six in dashes.
+    // In these it differs from others, beyond the first seven in dashes.
     const std::string look =
         series.shade
             ? fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade))

@@ -174,15 +174,17 @@ TEST(Plot, LabelsLogarithmicAxes) {
   }
 }
 
-TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
+TEST(Plot, DistinguishesFourteenSeriesAndShadesByPlace) {
   Plot plot;
   plot.panels.push_back({"", "", {}});
-  for (int series = 0; series < 12; ++series) {
+  for (int series = 0; series < 14; ++series) {
     plot.panels.front().series.push_back(
         {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kLineAndPoints});
   }
-  EXPECT_THAT(testing::Matches(Svg(plot), "class=\"line([^\"]*)\""), SizeIs(12))
+  EXPECT_THAT(testing::Matches(Svg(plot), "class=\"line([^\"]*)\""), SizeIs(14))
       << "colours and dashes";
+  EXPECT_THAT(testing::Matches(Svg(plot), "class=\"line s([0-9])\""), SizeIs(7))
+      << "the seven curves of tradeoff have a colour each";
 
   PlotPanel shades{"", "", {{"line", {0, 1}, {0, 1}}, {"", {0, 1}, {0, 1}}}};
   for (const double shade : {0.0, 0.5, 1.0}) {

@@ -246,7 +246,7 @@ def make_pages(program, scratch):
     page = scratch / "track.html"
     run_program(program, "track", cycles, worn, "--output", scratch / "table.csv", "--normal-load",
                 120, "--report", page)
-    pages.append((page, {f"evolution-{k}" for k in range(1, 6)}))
+    pages.append((page, {"loops"} | {f"evolution-{k}" for k in range(1, 6)}))
 
     broken = scratch / "broken.csv"
     broken.write_text("displacement [m],force [N]\n0,0\n1e-6,none\n", encoding="utf-8")

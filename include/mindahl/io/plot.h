@@ -31,7 +31,7 @@ struct PlotMark {
 struct PlotPanel {
   std::string x_label{};  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label{};
-  std::vector<PlotSeries> series = {};  ///< the first twelve differ in colour and in grey
+  std::vector<PlotSeries> series = {};  ///< the first fourteen differ in colour and in grey
   double height = 1.0;                  ///< axes over half of the width, > 0
   bool log_x = false;
   bool log_y = false;
