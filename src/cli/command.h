@@ -188,7 +188,8 @@ void AddLawParameters(const OptionGroup& group, LawRequest& law);
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
-void AddModelOptions(CLI::App& command, FitRequest& request);
+/// @param of_cycles  the help is that of `track`, which has no asymmetry, column or choice of law
+void AddModelOptions(CLI::App& command, FitRequest& request, bool of_cycles = false);
 /// Adds those of columns, of the model and of the contact, and which samples count.
 void AddFitOptions(CLI::App& command, FitRequest& request);
 

@@ -92,11 +92,12 @@ void ReadSelection(std::string_view text, std::string_view option, FitRequest& r
   }
 }
 
-std::string DescribeTerms() {
+std::string DescribeTerms(bool of_cycles) {
   std::string text =
-      "terms that are fitted in addition to the law; auto: those that the\nrecord requires. A "
-      "column's name, or";
+      "terms that are fitted in addition to the law; auto: those that the\nrecord requires";
+  text += of_cycles ? "; or" : ". A column's name, or";
   for (const identification::TermGroup& group : identification::TermGroups()) {
+    if (of_cycles && group.name == "asymmetry") continue;
     text += fmt::format("\n{}: {}", group.name, group.meaning);
   }
   return text + "\ndefault none";
@@ -229,11 +230,12 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
             "encoding of the files, as iconv names it [latin1]; default found", "NAME");
 }
 
-void AddModelOptions(CLI::App& command, FitRequest& options) {
+void AddModelOptions(CLI::App& command, FitRequest& options, bool of_cycles) {
   const OptionGroup group(command, "Model");
   identification::FitOptions& fit = options.fit;
   std::vector<std::pair<std::string, const models::FrictionModel*>> models = {{"auto", nullptr}};
-  std::string titles = "law of the friction; auto: mindlin-dahl or dahl, by the record";
+  std::string titles = "law of the friction; auto: mindlin-dahl";
+  if (!of_cycles) titles += " or dahl, by the record";
   for (const models::FrictionModel& model : models::FrictionModels()) {
     models.emplace_back(model.name, &model);
     titles += fmt::format("\n{}: {}", model.name, model.title);
@@ -275,7 +277,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
               options.terms = names;
             }
           },
-          DescribeTerms(), "none|auto|NAME,...")
+          DescribeTerms(of_cycles), "none|auto|NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   // parse(text, unit) returns the value that a parameter is given, or nothing.

@@ -253,6 +253,10 @@ class TrackRun {
       stream.Next(piece);
     } else {
       piece = campaign::ReadHead(stream);
+      io::RecordFile head = layout;
+      head.record.displacement = piece.displacement;
+      head.lines = piece.lines;
+      request::RequireLoops({head});
       BeginFits(piece, layout);
     }
     while (piece.size() > 0) {
@@ -375,7 +379,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
            "CSV records of one test, in order; no cycle extends over two files", "FILE")
       ->required();
   AddColumnOptions(command, options.fit.columns);
-  AddModelOptions(command, options.fit);
+  AddModelOptions(command, options.fit, /*of_cycles=*/true);
   for (const char* refused : {"--compare", "--covariate", "--noise-in"}) {
     command.get_option(refused)->group("");
   }

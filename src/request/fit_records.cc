@@ -30,41 +30,6 @@ using loop::Record;
 
 namespace {
 
-/// Refuses records that are no loops, naming the place in the file: of two kinds, or of a column
-/// that never changes or is beyond any unit that is meant.
-void RequireLoops(const std::vector<RecordFile>& inputs) {
-  const RecordFile& first = inputs.front();
-  const report::Units units = report::UnitsOf(first.is_torsional);
-  for (const RecordFile& input : inputs) {
-    if (input.is_torsional != first.is_torsional) {
-      Refuse("of {} and {} one holds a force, one a torque: fit them apart", first.name,
-             input.name);
-    }
-    const Record& record = input.record;
-    for (const auto& [what, column, values, unit] :
-         {std::tuple("displacement", &input.displacement, &record.displacement, units.displacement),
-          {"force", &input.force, &record.force, units.force},
-          {"time", &input.time, &record.time, "s"}}) {
-      if (values->empty() || !*column) continue;
-      const auto [least, greatest] = std::ranges::minmax_element(*values);
-      const double half = *greatest / 2 - *least / 2;
-      const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
-      const auto row = static_cast<std::size_t>((half == 0 ? least : widest) - values->begin());
-      const std::string at = fmt::format("{}:{}:{}", input.name, input.LineOf(row), column->index);
-      if (half == 0) {
-        Refuse(
-            "{}: the {} never changes, it is {} {} in every row: choose another column with --{}",
-            at, what, *least, unit, what);
-      }
-      if (half >= 1e-100 && half <= 1e100) continue;
-      Refuse(
-          "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: choose other "
-          "units",
-          at, what, half, unit);
-    }
-  }
-}
-
 /// Cuts each record to its test, where that is asked for and nothing says which samples count.
 /// @param options  changed: a contact that was cycled before is steady
 /// @param input  changed: gets the samples that are cut off as left out
@@ -351,6 +316,47 @@ std::string WhyNotEstablished(const FitResult& fit, Strictness strictness) {
     if (!suffices) return fmt::format("not established: {} is not identifiable", estimate.name);
   }
   return "";
+}
+
+std::string ExplainColumnFault(const FitRequest& request, const std::string& fault) {
+  for (const std::string& name : request.terms) {
+    if (fault.find(fmt::format("covariate {}:", name)) == std::string::npos) continue;
+    return fmt::format("--terms: '{}' is no term, so it is taken for a column: {}", name, fault);
+  }
+  return fault;
+}
+
+void RequireLoops(const std::vector<RecordFile>& inputs) {
+  const RecordFile& first = inputs.front();
+  const report::Units units = report::UnitsOf(first.is_torsional);
+  for (const RecordFile& input : inputs) {
+    if (input.is_torsional != first.is_torsional) {
+      Refuse("of {} and {} one holds a force, one a torque: fit them apart", first.name,
+             input.name);
+    }
+    const Record& record = input.record;
+    for (const auto& [what, column, values, unit] :
+         {std::tuple("displacement", &input.displacement, &record.displacement, units.displacement),
+          {"force", &input.force, &record.force, units.force},
+          {"time", &input.time, &record.time, "s"}}) {
+      if (values->empty() || !*column) continue;
+      const auto [least, greatest] = std::ranges::minmax_element(*values);
+      const double half = *greatest / 2 - *least / 2;
+      const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
+      const auto row = static_cast<std::size_t>((half == 0 ? least : widest) - values->begin());
+      const std::string at = fmt::format("{}:{}:{}", input.name, input.LineOf(row), column->index);
+      if (half == 0) {
+        Refuse(
+            "{}: the {} never changes, it is {} {} in every row: choose another column with --{}",
+            at, what, *least, unit, what);
+      }
+      if (half >= 1e-100 && half <= 1e100) continue;
+      Refuse(
+          "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: choose other "
+          "units",
+          at, what, half, unit);
+    }
+  }
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {

@@ -235,7 +235,28 @@ TEST_F(TrackCommand, SaysInTheFirstLineThatCyclesHaveNoFit) {
   Write("dead.csv", Joined(lines));
   EXPECT_THAT(Lines(Done(track + "--report" + Path("page.html")).out)[0],
               EndsWith("; 11 of 98 cycles without a fit or a loop, the last with both is 90"));
-  EXPECT_THAT(ContentOf("page.html"), HasSubstr("incomplete"));
+  const std::string page = ContentOf("page.html");
+  EXPECT_THAT(page, HasSubstr("incomplete"));
+  // Of the loops, the last figure, no line is a step.
+  const std::string loops = page.substr(page.find("<figure id=\"loops\">"));
+  EXPECT_THAT(loops, HasSubstr("Measured, of the cycles in the legend."));
+  EXPECT_THAT(loops, Not(HasSubstr("Dashed")));
+}
+
+TEST_F(TrackCommand, NamesTheFileWhoseDisplacementNeverChanges) {
+  Write("still.csv", "x [um],F [N]\n1,0\n1,4\n1,2\n1,3\n");
+  ExpectRefused(Track("table.csv", "still.csv"),
+                "still.csv:2:1: the displacement never changes, it is 1e-06 m in every row: choose "
+                "another column with --displacement");
+}
+
+TEST(TrackHelp, HasNoChoiceThatTrackRefuses) {
+  const std::string fit = Done("fit --help-all").out;
+  const std::string track = Done("track --help-all").out;
+  for (const char* of_fit : {"dahl, by the record", "asymmetry: ", "A column's name"}) {
+    EXPECT_THAT(fit, HasSubstr(of_fit));
+    EXPECT_THAT(track, Not(HasSubstr(of_fit)));
+  }
 }
 
 // A spike of the displacement turns it, and makes two pieces of a cycle with ten times its energy.

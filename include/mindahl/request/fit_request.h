@@ -53,6 +53,14 @@ std::string WhyNotEstablished(const identification::FitResult& fit, Strictness s
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
                                 identification::FitOptions& options);
 
+/// Returns why a record is refused, where that is a column that `--terms` names: it may be a
+/// misspelt term.
+std::string ExplainColumnFault(const FitRequest& request, const std::string& fault);
+
+/// @throws InputError naming the place in the file: records of two kinds, a column that never
+///   changes or is beyond any unit that is meant
+void RequireLoops(const std::vector<io::RecordFile>& records);
+
 /// Reads the request's files.
 /// @throws InputError naming file, line and column
 std::vector<io::RecordFile> ReadRecords(const FitRequest& request);
