@@ -7,7 +7,6 @@ import json
 import os
 import threading
 import warnings
-from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Optional, Union
 
@@ -16,7 +15,7 @@ import numpy as np
 from . import _mindahl
 from ._arguments import count, in_executor
 from ._fit import fit, prepared, request_and_arguments
-from ._records import name_of
+from ._records import is_source, name_of
 from ._result import FitWarning, Report, Table, Told
 
 STRICTNESS = (False, "doubtful", True)  # as the library counts
@@ -52,13 +51,13 @@ def _column(cells: list[Any]) -> Any:
 
 
 def batch(
-    sources: Iterable[Any], *, strict: Union[bool, str] = False, threads: Optional[int] = None,
+    sources: Any, *, strict: Union[bool, str] = False, threads: Optional[int] = None,
     executor: Any = None, **keywords: Any,
 ) -> BatchTable:
     """Fits each source on its own, with any keyword of fit() for all of them: one row a source.
 
     sources: files, data frames, Records or pairs (displacement [m], force [N]), each a test of its
-        own. A source that fails does not stop the others.
+        own; or one of these. A source that fails does not stop the others.
     strict: True, or "doubtful", as --strict: a source whose fit is not established fails too.
     threads: number of worker threads (default: one per core); the results are identical.
     executor: instead of threads, an object with submit(function, *arguments) whose futures have
@@ -76,9 +75,12 @@ def batch(
     request_and_arguments(given)[0].check()
     if strict not in STRICTNESS:
         raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
+    listed = [sources] if is_source(sources) else list(sources)
+    if not listed:
+        raise _mindahl.InputError("sources is empty: give a file, data frame, Record or pair")
     stop = threading.Event()
     tasks = [(source, f"record {k + 1}", STRICTNESS.index(strict), given, None if executor is not None else stop.is_set)
-             for k, source in enumerate(sources)]
+             for k, source in enumerate(listed)]
     if executor is not None:
         entries = in_executor(executor, _fit_one, tasks)
     else:

@@ -119,4 +119,7 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
 def prepared(given: Mapping[str, Any]) -> tuple[list[_mindahl.Record], _mindahl.FitRequest, list[str]]:
     """The records and the request that the arguments of fit() say, and what was assumed."""
     request, arguments = request_and_arguments(given)
-    return records_of(given["source"], arguments), request, arguments.assumed
+    try:
+        return records_of(given["source"], arguments), request, arguments.assumed
+    except _mindahl.InputError as error:
+        raise _mindahl.InputError(request.explained(str(error))) from None

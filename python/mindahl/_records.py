@@ -149,6 +149,11 @@ def is_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
+def is_source(value: Any) -> bool:
+    """True of one record, in whatever form, and not of several."""
+    return is_path(value) or hasattr(value, "read") or is_pair(value) or columns_by_name(value) is not None
+
+
 def records_of(source: Any, arguments: RecordArguments) -> list[Record]:
     """The records that the arguments of fit() and track() say."""
     roles = arguments.roles
@@ -200,6 +205,6 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         return arguments.of_table(name, [header for header, _ in columns], [
             array(header, values, keep_missing=True) for header, values in columns], arguments.columns())
     if is_array(source):
-        raise ValueError(f"{name}: force is missing: give a pair of arrays (displacement, force)")
+        raise ValueError(f"{name} is a single array: give a pair of arrays (displacement, force)")
     array(name, source)  # says why it is no array
     raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -248,10 +248,13 @@ class FitResult(Told):
 
         One of save() is complete; the other has parameters,
         sections and warnings, and neither records nor figures.
-        Raises ValueError for another document.
+        Raises InputError (a ValueError) for another document, and where the file cannot be read.
         """
-        with open(path, "rb") as file:
-            content = file.read()
+        try:
+            with open(path, "rb") as file:
+                content = file.read()
+        except OSError as error:
+            raise _mindahl.InputError(f"cannot read '{os.fspath(path)}': {error.strerror}") from None
         kept: dict[str, Any] = {"text": "", "notes": (), "units": ("m", "N"), "records": ()}
         try:
             read = json.loads(content)
@@ -260,15 +263,22 @@ class FitResult(Told):
         except (KeyError, TypeError, ValueError):
             is_fit = False
         if not is_fit:
-            raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
+            raise _mindahl.InputError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
         kept["records"] = [{name: np.array(value) if isinstance(value, list) else value
                             for name, value in record.items()} for record in kept["records"]]
         return cls(kept)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes JSON, text, page and arrays to one file of JSON, for load()."""
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump({**self._kept, "page": self.page()}, file, default=lambda values: values.tolist())
+        """Writes JSON, text, page and arrays to one file of JSON, for load().
+
+        Raises InputError (a ValueError) where the file cannot be written.
+        """
+        try:
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump({**self._kept, "page": self.page()}, file,
+                          default=lambda values: values.tolist())
+        except OSError as error:
+            raise _mindahl.InputError(f"cannot write '{os.fspath(path)}': {error.strerror}") from None
 
     def __reduce__(self) -> tuple[Any, ...]:
         return FitResult, (self._kept,)

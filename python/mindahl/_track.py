@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import inspect
 import io
 import warnings
 from typing import Any, Optional
@@ -12,6 +13,7 @@ import numpy as np
 from . import _mindahl
 from ._arguments import in_executor, several, words
 from ._commands import Answer, ask
+from ._fit import fit
 from ._records import OF_FILES, ROLES, UNITS, RecordArguments, is_path, records_of
 from ._result import FitWarning, Table, Told
 
@@ -65,9 +67,11 @@ def track(source: Any = None, force: Any = None, *, average: int = 1,
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
         rows that were skipped.
-    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
+    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value,
+        TypeError for a keyword that fit() does not have.
     Other threads run while it fits.
     """
+    inspect.signature(fit).bind_partial(**keywords)
     task = {"source": source, "force": force, "average": average, "threads": threads,
             **keywords}
     done: tuple[CycleTable, list[str]] = (_tracked(task) if executor is None else

@@ -87,6 +87,10 @@ void AddFit(py::module_& module) {
       .def(py::init(&RequestOf), py::arg("words"))
       .def("covariate_columns",
            [](const FitRequest& request) { return request::MakeFitOptions(request).covariates; })
+      .def("explained",
+           [](const FitRequest& request, const std::string& fault) {
+             return WithKeywords(request::ExplainColumnFault(request, fault));
+           })
       .def("check", [](const FitRequest& request) { request::MakeFitOptions(request); });
   py::class_<Report, std::shared_ptr<Report>>(module, "Fitted")
       .def("page",

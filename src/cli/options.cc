@@ -103,6 +103,16 @@ std::string DescribeTerms(bool of_cycles) {
   return text + "\ndefault none";
 }
 
+/// Refuses a name that no parameter of any fit has.
+void RequireParameter(std::string_view option, std::string_view name) {
+  if (name.empty() || identification::TermOfParameter(name) != nullptr) return;
+  std::vector<std::string_view> names;
+  for (const Term& term : identification::Terms()) {
+    if (!term.of_column) names.push_back(term.name);
+  }
+  Refuse("{}: parameter {}", option, UnknownAmong(name, names));
+}
+
 std::string DescribeParameters() {
   std::vector<std::string> words;
   for (const Term& term : identification::Terms()) {  // --covariate takes a column's value
@@ -288,7 +298,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options, bool of_cycles) {
         [&target, option, form, parse](const std::string& text) {
           const auto [name, value] = Split(text, '=');
           const Term* term = identification::FindTerm(identification::TermNameOf(name));
-          // The fit refuses a name that is none.
+          RequireParameter(option, name);
           auto parsed = parse(value, term == nullptr ? "-" : term->unit);
           if (name.empty()) parsed.reset();
           GiveOnce(option, name, Read(std::move(parsed), option, text, form), target);

@@ -367,12 +367,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
     try {
       inputs.push_back(io::ReadRecord(file, columns));
     } catch (const InputError& error) {
-      const std::string text = error.what();
-      for (const std::string& name : request.terms) {
-        if (text.find(fmt::format("--covariate {}:", name)) == std::string::npos) continue;
-        Refuse("--terms: '{}' is no term, so it is taken for a column: {}", name, text);
-      }
-      throw;
+      throw InputError(ExplainColumnFault(request, error.what()));
     }
   }
   return inputs;

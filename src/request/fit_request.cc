@@ -82,11 +82,12 @@ FitOptions MakeFitOptions(const FitRequest& request) {
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
   FitOptions fit = MakeFitOptions(request);
+  const std::string column = fit.covariates.empty() ? "" : fit.covariates.front();
   // A cycle of gross slip does not distinguish an asymmetry from an offset of the force.
   for (const auto& [is_given, option] :
-       {std::pair(request.compare, "--compare"),
+       {std::pair(request.compare, std::string("--compare")),
         {!request.fit.covariates.empty(), "--covariate"},
-        {!fit.covariates.empty(), "--terms of a column"},
+        {!column.empty(), fmt::format("--terms: '{}' is no term: that of a column", column)},
         {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
         {std::ranges::count(fit.terms, "asymmetry") > 0, "--terms asymmetry"}}) {
     if (!is_given) continue;

@@ -160,6 +160,9 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
     assert list(expected.to_pandas()["name"]) == list(expected.parameters)
     assert set(table["sigma"]) == {expected.sigma.value}
     assert set(table["friction_coefficient"]) == {expected.contact.friction_coefficient.value}
+    for one in (SPHERE, str(SPHERE), record, frame, (record.displacement, record.force)):
+        single = mindahl.batch(one, model="mindlin", normal_load=50, terms="none")
+        assert list(single["sigma"]) == [expected.sigma.value]
     strict = mindahl.batch([FAR], strict=True, terms="none")
     assert "not established" in strict.faults[str(FAR)]
 
@@ -167,3 +170,5 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
 def test_a_keyword_that_fit_has_not_is_refused():
     with pytest.raises(TypeError, match="modell"):
         mindahl.batch([SPHERE], modell="dahl")
+    with pytest.raises(TypeError, match="output"):
+        mindahl.track(SPHERE, output="cycles.csv")

@@ -265,7 +265,8 @@ def test_arrays_outlive_their_result(sphere):
 
 @pytest.mark.parametrize("arguments, message", [
     (([0, 1, 2], [0, 1]), r"force \[N\] has 2 samples and displacement \[m\] 3"),
-    (([[0, 1], [1, 0]], None), "force is missing: give a pair"),
+    (([[0, 1], [1, 0]], None), "record 1 is a single array: give a pair"),
+    (([np.zeros(3)], [np.zeros(3)]), "record 1 is a single array: give a pair"),
     ((np.zeros((3, 2)), np.zeros(3)), r"displacement has the shape \(3, 2\)"),
     (([0.0, 1.0, np.nan], [0.0, 1.0, 2.0]), r"displacement\[2\] = nan is invalid: must be finite"),
     (([0.0, 1.0, 2.0], [0.0, np.inf, 2.0]), r"force\[1\] = inf is invalid: must be finite"),
@@ -293,6 +294,7 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"model": "coulomb"}, "model: coulomb not in {auto,mindlin-dahl,"),
     ({"offsets": "maybe"}, "offsets: maybe not in {on,off}"),
     ({"fix": {"alpha": "x"}}, "fix: 'alpha=x' is invalid: write NAME=VALUE"),
+    ({"terms": "lags"}, "^terms: 'lags' is no term, so it is taken for a column: record: covariate lags: "),
     ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "'rig_stiffness' is given twice"),
     ({"cycles": 3}, "cycles: 'cycles=3' is invalid: write cycles=LO:HI"),
     ({"cycles": (1, 2, 3)}, "must be a number or a pair"),
@@ -320,6 +322,12 @@ def test_a_fault_of_a_file_is_an_input_error(tmp_path):
     assert issubclass(mindahl.InputError, ValueError)
     with pytest.raises(mindahl.InputError, match="cannot read"):
         mindahl.read_csv(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize("option, value", [("fix", 0.3), ("start", 0.3), ("bound", (0, 1)), ("prior", (0.3, 0.1))])
+def test_a_name_of_no_parameter_is_an_input_error(option, value):
+    with pytest.raises(mindahl.InputError, match=f"^{option}: parameter 'alfa' is unknown: must be one of sigma, "):
+        mindahl.fit(SPHERE, **{option: {"alfa": value}})
 
 
 def test_what_a_person_should_act_on_is_warned_of():

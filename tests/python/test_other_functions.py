@@ -206,6 +206,8 @@ def test_a_joint_follows_the_torque_that_it_carries():
     (lambda: mindahl.batch([SPHERE], model="oak"), "model: oak not in"),
     (lambda: mindahl.batch([SPHERE], strict="very"), "strict = 'very' is invalid"),
     (lambda: mindahl.batch([SPHERE], executor=3), "executor: a int has neither"),
+    (lambda: mindahl.batch([]), "sources is empty: give a file"),
+    (lambda: mindahl.track(SPHERE, terms="lags"), "^terms: 'lags' is no term: that of a column is not available"),
 ])
 def test_what_breaks_a_rule_is_refused(call, message):
     with pytest.raises(ValueError, match=message) as refused:

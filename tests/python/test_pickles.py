@@ -58,8 +58,12 @@ def test_a_result_of_json_is_shown_and_says_what_it_has_not(tmp_path):
         loaded.plot()
     for content in (b"PK nothing", b"\xff", b"[]", b"{", b'{"schema": "mindahl.contact/1"}'):
         (tmp_path / "other").write_bytes(content)
-        with pytest.raises(ValueError, match="is no result of a fit"):
+        with pytest.raises(mindahl.InputError, match="is no result of a fit"):
             mindahl.FitResult.load(tmp_path / "other")
+    with pytest.raises(mindahl.InputError, match="cannot read '.*none.json': No such file"):
+        mindahl.FitResult.load(tmp_path / "none.json")
+    with pytest.raises(mindahl.InputError, match="cannot write '.*none/fit.json': No such file"):
+        result.save(tmp_path / "none" / "fit.json")
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
