@@ -385,23 +385,22 @@ class FitResult(Told):
         return Covariance(correlation * np.outer(errors, errors), tuple(free))
 
     def predict(self, displacement: Any) -> Floats:
-        """The force [N] that the fit predicts along a displacement [m] from the unloaded contact, of the
-        sign that the record has.
+        """The force [N] that the fit predicts along a displacement [m], of the sign that the record has:
+        from the unloaded contact on, or, if initial_state is "steady", of a contact that has settled on
+        the loop between the extremes of this displacement.
 
         Of several records it has the gate and the offsets of the first, of a load series the law at the
         mean load. Excursions that are smaller than the reversal gate are noise here too.
-        Raises ValueError for a fit that failed, of a cycled contact, or with terms that simulate()
-            does not have, and for one that was read from JSON, which has neither sign nor gate.
+        Raises ValueError for a fit that failed, for one with terms other than rig_stiffness and
+            asymmetry, which need more than a displacement (fit without them, or see fitted_force), and
+            for one that was read from JSON, which has neither sign nor gate.
         """
-        values = {name: parameter.value or 0.0 for name, parameter in self.parameters.items()}
-        if not values:
+        if not self.parameters:
             raise ValueError(self.text().strip())
-        if self._report["initial_state"] != "virgin":
-            raise ValueError("predict() is of fits of a virgin contact: initial_state is "
-                             f"{self._report['initial_state']}")
-        if "force_sign" not in self._kept:
+        if "values" not in self._kept:
             raise ValueError("a result that was read from JSON has not the sign of its record's force: "
                              "fit it again, or save() it")
+        values: dict[str, float] = dict(self._kept["values"])
         own = {name: values.pop(name) for name in ("sigma", "alpha", "slip_force", "rig_stiffness",
                                                    "asymmetry") if name in values}
         offset, origin = (values.get(name, values.get(f"{name}_1", 0.0))
@@ -411,8 +410,8 @@ class FitResult(Told):
         if others:
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
         force = _mindahl.simulate(
-            array("displacement", displacement) - origin, model=self._report["model"],
-            gate=self._kept["reversal_gate"], **own)
+            array("displacement", displacement) - origin, model=self.model,
+            gate=self._kept["reversal_gate"], steady=self.initial_state == "steady", **own)
         return offset + int(self._kept["force_sign"]) * force
 
     def page(self) -> str:

@@ -68,6 +68,11 @@ py::dict KeptOf(const py::object& self) {
       std::pair(std::string(report.units.displacement), std::string(report.units.force));
   kept["records"] = RecordsOf(report, self);
   if (report.failed()) return kept;
+  py::dict values;
+  for (const identification::ParameterEstimate& estimate : report.fit.parameters) {
+    values[py::str(estimate.name)] = estimate.value;
+  }
+  kept["values"] = values;  // the report has none of a parameter at a bound
   kept["force_sign"] = report.fit.force_sense;
   kept["reversal_gate"] = report.fit.records.front().gate.gate;
   return kept;

@@ -48,35 +48,16 @@ models::SeriesSpring RigOf(std::optional<double> stiffness) {
   return {.stiffness = *stiffness};
 }
 
-/// Computes the friction of a joint [N] under one load.
-void SimulateJoint(const FrictionModel& model, const BranchLaw& law, double asymmetry,
-                   std::span<const double> displacement, std::span<double> force) {
-  if (!(std::abs(asymmetry) < 1)) {
-    ThrowInvalid("asymmetry [-]", asymmetry, "must be in (-1, 1)");
-  }
-  Validate(law);
-  const double slip_force = law.slip_force;
-  const py::gil_scoped_release others_may_run;
-  ContactState state(model, {law.tangential_stiffness / slip_force, law.shape_exponent, 1.0});
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    force[i] = slip_force * models::JointForce(state.Move(displacement[i]), 1.0, asymmetry);
-  }
-}
-
 py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
                              std::optional<double> alpha, const std::string& model_name,
-                             std::optional<double> rig_stiffness, double asymmetry, double gate) {
+                             std::optional<double> rig_stiffness, double asymmetry, double gate,
+                             bool is_steady) {
   const bool is_simplified = model_name == models::kSimplifiedDahl;
   const FrictionModel& model = RequireModel(is_simplified ? "dahl" : model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
   const std::span<const double> samples = SpanOf(displacement);
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
-  if (model.memory == models::Memory::kNone && !is_simplified && asymmetry != 0) {
-    if (rig_stiffness) throw InputError("--rig-stiffness is refused beside an asymmetry");
-    SimulateJoint(model, law, asymmetry, samples, written);
-    return force;
-  }
   if (is_simplified) {
     if (rig_stiffness || asymmetry != 0) {
       throw InputError(fmt::format(
@@ -86,10 +67,19 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
     models::EvaluateSimplifiedDahl(law, samples, {}, written);
     return force;
   }
+  const bool is_joint = model.memory == models::Memory::kNone && asymmetry != 0;
+  if (is_joint && rig_stiffness) throw InputError("--rig-stiffness is refused beside an asymmetry");
+  if (!(std::abs(asymmetry) < 1)) ThrowInvalid("asymmetry [-]", asymmetry, "must be in (-1, 1)");
   const py::gil_scoped_release others_may_run;
   const models::LoadingPath path = models::MakeLoadingPath(
-      samples, loop::FindReversals(samples, gate), model.memory, {.asymmetry = asymmetry});
+      samples, loop::FindReversals(samples, gate), model.memory,
+      {.state = is_steady ? models::InitialState::kSteady : models::InitialState::kVirgin,
+       .asymmetry = is_joint ? 0.0 : asymmetry});
   models::EvaluateForce(model, law, path, samples, written, RigOf(rig_stiffness));
+  if (!is_joint) return force;
+  for (double& each : written) {
+    each = law.slip_force * models::JointForce(each / law.slip_force, 1.0, asymmetry);
+  }
   return force;
 }
 
@@ -110,7 +100,7 @@ void AddModels(py::module_& module) {
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha") = py::none(), py::arg("model"),
              py::arg("rig_stiffness") = py::none(), py::arg("asymmetry") = 0.0,
-             py::arg("gate") = 0.0);
+             py::arg("gate") = 0.0, py::arg("steady") = false);
   py::class_<ContactState>(module, "ContactState",
                            R"(A contact that is moved step by step.
 

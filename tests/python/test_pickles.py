@@ -132,11 +132,13 @@ def test_covariances_are_those_of_the_errors_and_correlations(sphere):
 
 
 @pytest.mark.parametrize("keywords", [
-    {}, {"rig_stiffness": 1e9}, {"model": "dahl"}, {"terms": "asymmetry", "fix": {"force_offset": 0}}])
+    {}, {"rig_stiffness": 1e9}, {"model": "dahl"}, {"terms": "asymmetry", "fix": {"force_offset": 0}},
+    {"model": "dahl", "terms": "asymmetry", "fix": {"force_offset": 0}}])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_prediction_along_the_record_is_the_fit(sphere, keywords, sign):
+@pytest.mark.parametrize("state", ["virgin", "steady"])
+def test_a_prediction_along_the_record_is_the_fit(sphere, keywords, sign, state):
     displacement, force = sphere[1], sign * sphere[2]
-    result = mindahl.fit(displacement, force, initial_state="virgin", **keywords)
+    result = mindahl.fit(displacement, force, initial_state=state, **keywords)
     rounding = 64 * np.finfo(float).eps * np.abs(force).max()
     np.testing.assert_allclose(result.predict(displacement), result.fitted_force, rtol=0, atol=rounding)
 
@@ -146,6 +148,26 @@ def test_a_prediction_of_several_records_is_of_the_first(sphere):
     result = mindahl.fit([(displacement, force), (displacement + 1e-6, force + 5.0)], initial_state="virgin")
     rounding = 64 * np.finfo(float).eps * np.abs(force).max()
     np.testing.assert_allclose(result.predict(displacement), result.fitted_force[0], rtol=0, atol=rounding)
+
+
+def test_a_prediction_of_a_steady_fit_is_of_a_contact_that_has_settled():
+    _, displacement = mindahl.excitation(amplitude=2e-6, cycles=4, samples_per_cycle=200)
+    force = mindahl.simulate(displacement, sigma=4e7, slip_force=40.0)
+    result = mindahl.fit(displacement[200:], force[200:], initial_state="steady")
+    smaller = 0.6 * displacement  # [m], a loop that was not measured
+    settled = mindahl.simulate(smaller, sigma=4e7, slip_force=40.0)[200:]
+    accuracy = 1e-6 * 40.0  # [N], of parameters of a record without noise
+    np.testing.assert_allclose(result.predict(smaller[200:]), settled, rtol=0, atol=accuracy)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_prediction_does_not_need_a_value_that_is_reported(tmp_path):
+    result = mindahl.fit(DATA / "far_from_slip.csv")
+    assert result.alpha.value is None and result.alpha.status == "at_upper_bound"
+    displacement = result.records[0].displacement
+    rounding = 64 * np.finfo(float).eps * np.abs(result.fitted_force).max()
+    for again in (result, pickle.loads(pickle.dumps(result)), saved_and_loaded(result, tmp_path)):
+        np.testing.assert_allclose(again.predict(displacement), result.fitted_force, rtol=0, atol=rounding)
 
 
 def test_a_prediction_takes_no_noise_for_a_reversal(tmp_path):
@@ -170,8 +192,6 @@ def test_what_cannot_be_predicted_is_refused(sphere, tmp_path):
     (tmp_path / "fit.json").write_text(result.to_json())
     with pytest.raises(ValueError, match="read from JSON has not the sign"):
         mindahl.FitResult.load(tmp_path / "fit.json").predict(displacement)
-    with pytest.raises(ValueError, match="initial_state is steady"):
-        mindahl.fit(displacement, force, initial_state="steady").predict(displacement)
     with pytest.raises(ValueError, match="has no term viscous"):
         mindahl.fit(displacement, force, time=seconds, fix={"viscous": 5.0}).predict(displacement)
 
