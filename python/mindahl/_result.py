@@ -156,8 +156,8 @@ def _wrapped(value: Any, path: str) -> Any:
 class Parameter:
     """A fitted or held parameter, in SI units.
 
-    is_known: True if the record determines it. Check it before using value: if it is False, value is
-        only where the search ended, and repr() has no number of it.
+    is_known: True if it is held fixed, identifiable or effective. Check it before using value.
+    value: where the fit ended; None if that is a bound and the parameter is not identifiable.
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
     identifiability: "identifiable", "effective" (the model is not adequate),
@@ -174,8 +174,8 @@ class Parameter:
 
     @property
     def is_known(self) -> bool:
-        """Held fixed, or identifiable: the value is an answer."""
-        return self.status == "fixed" or self.identifiability == "identifiable"
+        """True if held fixed, identifiable or effective, as the library's ParameterEstimate."""
+        return self.status == "fixed" or self.identifiability in ("identifiable", "effective")
 
     def __str__(self) -> str:
         unit = "" if self.unit == "-" else f" {self.unit}"
@@ -194,8 +194,8 @@ class Parameter:
 
     def __float__(self) -> float:
         """The value. Raises ValueError where the record does not determine it."""
-        if self.value is None or not (self.is_known or self.identifiability == "effective"):
-            raise ValueError(f"{self}: the record determines no value")
+        if self.value is None or not self.is_known:
+            raise ValueError(f"{self}: the record determines no value: ask is_known, or hold it by fix")
         return self.value
 
 

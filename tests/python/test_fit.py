@@ -172,10 +172,13 @@ def test_what_is_not_known_has_no_number_where_it_is_printed():
     for said in ("alpha: not identifiable", "slip_force > 3.2", "bounded below", "sigma = 4.84"):
         assert said in repr(far)
     assert float(far.sigma) == far.sigma.value
-    with pytest.raises(ValueError, match="alpha: not identifiable: the record determines no value"):
+    with pytest.raises(ValueError, match="alpha: not identifiable: the record determines no value: ask is_known"):
         float(far.alpha)
     held = mindahl.fit(DATA / "far_from_slip.csv", fix={"alpha": 0.25})
     assert held.alpha.is_known and str(held.alpha) == "alpha = 0.25, held"
+    effective = mindahl.fit(DATA / "lag.csv", terms="none").sigma  # in the program is_known() too
+    assert effective.identifiability == "effective" and effective.is_known
+    assert float(effective) == effective.value
 
 
 def test_a_frame_s_columns_can_be_chosen(sphere):
