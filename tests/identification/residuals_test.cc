@@ -99,10 +99,20 @@ TEST(ResidualStructure, NoiseRepeatsNothing) {
   EXPECT_LE(found, kMost);
 }
 
+TEST(ResidualStructure, ARippleOfAFewSamplesRepeats) {
+  // 100 samples a stroke, and 13 periods in it.
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 4.0, 200);
+  Generator generator(3);
+  std::vector<double> residual;
+  for (const double x : displacement) {
+    residual.push_back(std::sin(13 * M_PI * x) + 0.3 * Normal(generator));
+  }
+  EXPECT_NEAR(StructureOf(displacement, residual).repeatable_share, 0.5 / (0.5 + 0.09), 0.05);
+}
+
 TEST(ResidualStructure, FractionIsVarianceThatRepeats) {
-  // Triangles, so that every part of a stroke has as many samples. Bins of a twentieth flatten
-  // sin 3x by (3·0.1)²/12 = 0.8 % of its variance, and the variance of noise over 2000 samples is
-  // known to √(2/2000) = 3 %.
+  // Triangles, so that every part of a stroke has as many samples. The variance of noise
+  // over 2000 samples is known to √(2/2000) = 3 %.
   constexpr double kShareError = 0.05;
   const History displacement = Cycling(Wave::kTriangle, 1.0, 10.0, 200);
   for (const double noise : {0.1, 0.7, 2.0}) {

@@ -58,15 +58,17 @@ std::vector<double> AllCorrelations(const Autocorrelation& process) {
   return all;
 }
 
-constexpr int kParts = 20;  // of a stroke's length
-using Parts = Eigen::Array<double, kParts, 1>;
+using Parts = Eigen::ArrayXd;  // of a stroke's length
 
 /// Means m of the residual in each part of the strokes of one direction.
 struct Side {
-  Parts last = Parts::Zero();     // means of the last stroke, 0 where it has no samples
-  Parts strokes = Parts::Zero();  // that have samples in a part
-  Parts sums = Parts::Zero();     // of their means
-  Parts squares = Parts::Zero();
+  explicit Side(Eigen::Index parts)
+      : last(Parts::Zero(parts)), strokes(last), sums(last), squares(last) {}
+
+  Parts last;     // means of the last stroke, 0 where it has no samples
+  Parts strokes;  // that have samples in a part
+  Parts sums;     // of their means
+  Parts squares;
 };
 
 /// Returns the mean square of what repeats in every stroke, 0 where the F test takes it for chance;
@@ -150,7 +152,12 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
                                     const Thresholds& thresholds) {
   const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
-  std::array<Side, 2> sides;
+  // As many as a stroke has samples: a ripple may have a period of a few.
+  constexpr Eigen::Index kFewestParts = 20;
+  constexpr Eigen::Index kMostParts = 200;
+  const Eigen::Index parts = std::clamp(
+      std::ssize(record.force) / (std::ssize(record.reversals) + 1), kFewestParts, kMostParts);
+  std::array sides = {Side(parts), Side(parts)};
   double squares = 0.0;
   double samples = 0.0;
   double carried = 0.0;  // Σ m·m of neighbouring strokes
@@ -158,13 +165,14 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
     const double from = excitation[stroke.begin];
     const double way = excitation[stroke.end] - from;
-    Parts sums = Parts::Zero();
-    Parts counts = Parts::Zero();
+    Parts sums = Parts::Zero(parts);
+    Parts counts = Parts::Zero(parts);
     double own_squares = 0.0;
     for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
       if (record.counts[i] == 0) continue;
       const double progress = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
-      const int part = std::min(static_cast<int>(progress * kParts), kParts - 1);
+      const auto part =
+          std::min(static_cast<Eigen::Index>(progress * static_cast<double>(parts)), parts - 1);
       sums[part] += residual[i];
       counts[part] += 1;
       own_squares += residual[i] * residual[i];

@@ -22,7 +22,8 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records);
 /// Jennen-Steinmetz 1986).
 double WhiteVariance(const FitResult& result);
 
-/// Makes a one-way analysis of variance of a record's residuals over 20 parts of each main stroke.
+/// Makes a one-way analysis of variance of a record's residuals over parts of each main stroke, as
+/// many as it has samples, but 20 to 200.
 /// @param residual  of the record's samples, in any unit
 ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
                                     const Thresholds& thresholds);
