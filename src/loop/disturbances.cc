@@ -167,8 +167,10 @@ using Readings = std::span<const double>;
 /// [steps about it and of the record] Least height of a spike over both neighbours. Noise of
 /// standard deviation s has steps of 2.2 s at the third of 24 and would have to stand out by 6.6.
 constexpr double kSpike = 3.0;
-/// [samples] Longer ones are as well a pulse of the drive or an inner loop.
+/// [samples] Longer ones are as well a pulse of the drive or an inner loop, ...
 constexpr std::size_t kLongestSpike = 3;
+/// ... but of a force under a motion that goes on in one direction.
+constexpr std::size_t kLongestOfForce = 20;
 /// [samples] So many to either side of a spike are looked at: the edges of a square wave of six
 /// samples a cycle come often enough within them to be distinguished from spikes.
 constexpr std::size_t kAboutSpike = 12;
@@ -255,13 +257,23 @@ double StepAbout(const Repaired& channel, std::size_t begin, std::size_t end) {
   return largest[2];
 }
 
+/// True if a motion goes on in one direction from before [begin, end) to behind it.
+bool GoesOn(Readings motion, std::size_t begin, std::size_t end) {
+  const auto own = motion.subspan(begin - 2, end + 4 - begin);
+  return std::ranges::is_sorted(own, std::less_equal()) ||
+         std::ranges::is_sorted(own, std::greater_equal());
+}
+
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(const Repaired& channel, double usual_step, std::size_t i) {
+/// @param motion  of a force; empty of a displacement
+std::size_t SpikeAt(const Repaired& channel, Readings motion, double usual_step, std::size_t i) {
   const Readings values = channel.values;
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
   double least = sense * values[i];
-  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + kLongestSpike; ++end) {
+  const std::size_t longest = motion.empty() ? kLongestSpike : kLongestOfForce;
+  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + longest; ++end) {
+    if (end > i + kLongestSpike && !GoesOn(motion, i, end)) return 0;
     const double height = least - std::max(before, sense * values[end]);
     if (height > kSpike * channel.Step(end + 1) && height > kSpike * StepAbout(channel, i, end) &&
         height > kSpike * usual_step) {
@@ -273,12 +285,12 @@ std::size_t SpikeAt(const Repaired& channel, double usual_step, std::size_t i) {
 }
 
 /// Makes one pass: a spike may hide another, until it is interpolated.
-bool FindSpikes(Repaired& channel, double usual_step) {
+bool FindSpikes(Readings motion, double usual_step, Repaired& channel) {
   bool found = false;
   for (std::size_t i = 2; i + 2 < channel.values.size(); ++i) {
     // Hardly any step of a clean record exceeds the one before it by this factor.
     if (!(channel.Step(i) > kSpike * channel.Step(i - 1))) continue;
-    const std::size_t samples = SpikeAt(channel, usual_step, i);
+    const std::size_t samples = SpikeAt(channel, motion, usual_step, i);
     if (samples == 0) continue;
     LeaveOut(i, i + samples, channel);
     found = true;
@@ -291,17 +303,18 @@ bool FindSpikes(Repaired& channel, double usual_step) {
 Interpolated FindAndInterpolate(const RecordView& record) {
   constexpr int kPasses = 3;
   const std::vector<Run> dropouts = FindDropouts(record);
-  const auto repaired = [&](Readings values) {
+  const auto repaired = [&](Readings values, Readings motion) {
     Repaired channel{.values = {values.begin(), values.end()}};
     for (const Run& run : dropouts) LeaveOut(run.begin, run.end, channel);
     const double usual_step = UsualStepOf(channel.values);
-    for (int pass = 0; pass < kPasses && FindSpikes(channel, usual_step); ++pass) continue;
+    for (int pass = 0; pass < kPasses && FindSpikes(motion, usual_step, channel); ++pass) continue;
     const auto count = static_cast<double>(channel.glitches.size());
     const bool is_repaired = count > 0 && count <= kMost * static_cast<double>(values.size());
     return is_repaired ? channel : Repaired();
   };
-  Repaired displacement = repaired(record.displacement);
-  Repaired force = repaired(record.force);
+  Repaired displacement = repaired(record.displacement, {});
+  Repaired force = repaired(
+      record.force, displacement.values.empty() ? record.displacement : displacement.values);
   displacement.glitches.merge(force.glitches);
   return {std::move(displacement.glitches), std::move(displacement.values),
           std::move(force.values)};

@@ -159,6 +159,23 @@ TEST(FindGlitches, FindsSpikesOfOneToThreeSamplesWhereTheyAre) {
   }
 }
 
+TEST(FindGlitches, FindsLongSpikesOfAForceUnderAMotionInOneDirection) {
+  const auto found_of = [](std::size_t at, std::size_t samples, double level) {
+    Record record;
+    record.displacement = Sine(5, 200);
+    record.force =
+        testing::Respond(testing::Model("mindlin"), {2, 1.0 / 3, 1.0}, record.displacement);
+    std::fill_n(record.force.begin() + static_cast<std::ptrdiff_t>(at), samples, level);
+    return FindGlitches(record).size();
+  };
+  for (const double level : {-40.0, 40.0}) {  // a bad reading, on a rising stroke
+    for (const std::size_t samples : {4U, 8U, 20U})
+      EXPECT_EQ(found_of(390, samples, level), samples);
+    EXPECT_EQ(found_of(390, 21, level), 0U);
+    EXPECT_EQ(found_of(445, 8, level), 0U);  // the motion turns within
+  }
+}
+
 TEST(FindGlitches, FindsDropoutsOfAnyLength) {
   Generator generator(3);
   Record record = Noisy();
