@@ -19,9 +19,8 @@ using models::Memory;
 /// that the user holds, or bounds where the fit comes to lie, are of one law only.
 bool AreComparable(const FitOptions& options, const ScaledRecords& data, const FitResult& fit) {
   if (fit.law.shape_exponent <= options.thresholds.jenkins_shape) return false;
-  // Under a load that varies no loop of the one law is a loop of the other; and slip forces that
-  // differ are directions that differ in stiffness too of Dahl's own.
-  if (data.load_varies || fit.Find("asymmetry") != nullptr) return false;
+  // Slip forces that differ are directions that differ in stiffness too of Dahl's own.
+  if (fit.Find("asymmetry") != nullptr) return false;
   if (std::ranges::none_of(data.records, &ScaledRecord::Turns)) return false;
   return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {
     return options.fixed.contains(name) ||
@@ -47,12 +46,13 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
     // Whatever forces are added to its own, a virgin contact may be unloaded at the first sample.
     const ParameterEstimate* const origin = dahl.FindOf(dahl.records[r], "displacement_offset");
+    // The row where it was may be missing, and noise has moved it.
+    const std::span<const double> x = records[r].displacement;
+    const double elastic = kUnloaded * dahl.law.slip_force / dahl.law.tangential_stiffness;
     const bool begins_unloaded =
         std::abs(record.force.front() - (low + high) / 2) <= unloaded ||
         (dahl.initial_state == InitialState::kVirgin && origin != nullptr &&
-         std::abs(records[r].displacement.front() - origin->value) *
-                 dahl.law.tangential_stiffness <=
-             kUnloaded * dahl.law.slip_force);
+         std::abs(x[0] - origin->value) <= std::max(elastic, 2 * std::abs(x[1] - x[0])));
     const bool is_excerpt = record.reversals.size() < 2 ? !record.BeginsAtZeros(options.thresholds)
                                                         : record.BeginsOnLoop();
     if (!begins_unloaded || is_excerpt) past.push_back({r, 0, record.reversals.front()});
@@ -61,7 +61,7 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
 }
 
 /// Returns the options of a fit of the other law, from the same steady loop. A held α stays.
-FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
+FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit, bool load_varies,
                           const models::FrictionModel& other, const models::BranchLaw& law) {
   FitOptions others = options;
   others.model = &other;
@@ -69,8 +69,9 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
   if (fit.Find("alpha")->status == ParameterStatus::kFixed) {
     others.fixed["alpha"] = fit.law.shape_exponent;
   }
-  // A fit that determines only a combination of parameters gives no start for the other law.
-  if (fit.FindFinding("not_identifiable", "combination") != nullptr) return others;
+  // A fit that determines only a combination of parameters gives no start for the other law, nor
+  // does one under a load that varies: no loop of the one law is then one of the other.
+  if (load_varies || fit.FindFinding("not_identifiable", "combination") != nullptr) return others;
   StartFrom(fit, others);
   others.start["sigma"] = law.tangential_stiffness;
   others.start["slip_force"] = law.slip_force;
@@ -121,11 +122,13 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   choice.alternative = models::FindFrictionModel(is_masing ? "dahl" : "mindlin-dahl");
   choice.law = is_masing ? models::DahlEquivalent(fit.law, amplitude)
                          : models::MasingEquivalent(fit.law, amplitude);
-  FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
+  FitOptions others =
+      OptionsOfOther(options, fit, data.load_varies, *choice.alternative, choice.law);
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
   const bool is_open = !options.initial_state;
   const double step = data.is_forced() ? 0.0 : fit.EncoderStep() / data.length;
-  const bool is_one_amplitude = HasOneAmplitude(data, step, options.thresholds);
+  const bool is_one_amplitude =
+      !data.load_varies && HasOneAmplitude(data, step, options.thresholds);
   const bool is_one_curve = fit.initial_state == InitialState::kSteady && is_one_amplitude;
   const auto starts_inside = [&](const ScaledRecord& record) {
     return record.StartsInside(options.thresholds.starts_inside);

@@ -60,6 +60,14 @@ TEST(JointFriction, IsRecoveredUnderATorqueThatChangesItsSign) {
   }
 }
 
+TEST(JointFriction, IsToldFromAContactOfMasingsLawUnderATorqueThatVaries) {
+  const Drive drive{.asymmetry = 0.0, .swing = 10.0};
+  const FitResult fit = FitOne(RecordOf(drive));
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_TRUE(fit.prefers_other_law());
+  EXPECT_LE(testing::WorstError(fit.law_choice->law, drive.law), 1e-9);
+}
+
 TEST(JointFriction, OfASettledJointDistinguishesTheAsymmetryFromTheOffset) {
   const Drive drive{.swing = 0.0};
   Record record = testing::From(RecordOf(drive), 2 * kSamples);

@@ -116,6 +116,15 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   EXPECT_EQ(dahl.FindFinding("other_law", "better"), nullptr);
 }
 
+TEST(LawChoice, IsMadeForDahlsLawWhereTheFirstRowIsMissing) {
+  for (const double knees : {3.0, 5.0}) {
+    const double amplitude = knees * kMindlin.slip_force / kMindlin.tangential_stiffness;
+    const FitResult fit = FitOne(Noisy(From(Virgin("dahl", amplitude, 3.0), 1)));
+    ASSERT_TRUE(fit.law_choice);
+    EXPECT_TRUE(fit.prefers_other_law()) << knees;
+  }
+}
+
 TEST(LawChoice, IsNotMadeForDahlsLawByADrift) {
   for (const double amplitude : {0.32, 0.54}) {
     Record record = Virgin("mindlin-dahl", amplitude * kGrossSlip, 3.25);
