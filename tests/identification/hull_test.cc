@@ -55,6 +55,22 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
   }
 }
 
+TEST(Discrepancy, OfALoopThatSlipsAtItsEndsKeepsTheSlipForceAtWhatWasCarried) {
+  for (const double reach : {1.8e-6, 2.2e-6}) {  // 1.2 and 1.5 times gross slip
+    Record record = Loop(reach);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] += 0.3 * std::cos(5 * record.displacement[i] / reach);
+    }
+    const FitResult fit = FitNoisy(record);
+    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
+    EXPECT_FALSE(loop::Slides(fit.WidestRecord().facts));
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    EXPECT_TRUE(Covers(slip_force, kLaw.slip_force)) << reach;
+    EXPECT_GT(slip_force.lower95.value_or(0), 0.95 * kLaw.slip_force) << reach;
+    EXPECT_LT(*fit.WidestRecord().facts.half_gap, 0.9 * kLaw.slip_force) << reach;
+  }
+}
+
 TEST(Discrepancy, OpenSlipForceBesideASpringThatIsNoTermIsBoundedByTheGap) {
   // A spring that hardens carries more than the contact, whose gap is Tc's.
   Record record = Loop();

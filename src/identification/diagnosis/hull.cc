@@ -29,13 +29,15 @@ std::vector<Finding> IncludeCompliantRig(const Estimates& fitted, ParameterEstim
   const Problem& problem = fitted.problem();
   const Solution& best = fitted.solution();
   const ParameterEstimate& shape = parameters[kShape];
-  // If the contact is Mindlin's and the rig is rigid, 1/3 exceeds the upper end of the interval
-  // with a probability of 1/40, and exceeds it by this margin with one of 1/600.
-  constexpr double kFurther = 0.5;  // of the distance from the value to the end
+  // If the contact is Mindlin's and the rig is rigid, 1/3 exceeds the upper end of the 95 %
+  // interval with a probability of 1/40, and exceeds it by this margin with one of 1/600.
+  constexpr double kFurther = 1.5;  // of the distance from the value to the end
+  const double degrees = fitted.noise().degrees_of_freedom(problem.parameters.free().size());
+  const double to_95 = StudentQuantile(degrees, 0.95) / fitted.quantile();
   // The law of a load that varies or of an imposed force has no rig; a prior says what α is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
       problem.parameters[kShape].has_prior() || !shape.upper95 ||
-      !(*shape.upper95 + kFurther * (*shape.upper95 - shape.value) < kMindlinShapeExponent)) {
+      !(shape.value + kFurther * to_95 * (*shape.upper95 - shape.value) < kMindlinShapeExponent)) {
     return {};
   }
   constexpr double kStiffer = 0.1;  // of the compliance is the contact's
@@ -202,12 +204,16 @@ void CoverDiscrepancy(const Estimates& fitted, FitResult& result) {
   const bool is_held = slip_force.status == ParameterStatus::kFixed;
   if (is_held || !half_gap || !loop::HasSlipped(widest.facts)) return;
   const double margin = std::hypot(ScatterOfCycles(result), result.adequacy.misfit);
+  const double peak_force = widest.facts.peak_force / widest.load_ratio;
+  // Of a loop that reaches its slip force at the ends alone, and which the law follows, the half
+  // gap is no plateau: it has carried T* there, of which other forces may be a part.
+  const bool is_plateau = loop::Slides(widest.facts) || result.adequacy.use != Use::kQuantitative;
+  const double carried = is_plateau ? *half_gap : peak_force;
   // The value itself is no better known than the gap.
-  const double least = std::min(*half_gap, slip_force.value) - margin;
-  const double most =
-      std::max({*half_gap, widest.facts.peak_force / widest.load_ratio, slip_force.value}) + margin;
+  const double least = is_plateau ? std::min(*half_gap, slip_force.value) - margin : 0.0;
+  const double most = std::max({carried, peak_force, slip_force.value}) + margin;
   const auto [lower, upper] =
-      std::minmax({slip_force.value, *half_gap - margin, *half_gap + margin,
+      std::minmax({slip_force.value, carried - margin, carried + margin,
                    std::clamp(slip_force.lower95.value_or(0.0), least, most),
                    std::clamp(slip_force.upper95.value_or(most), least, most)});
   SetInterval(slip_force, {.lower = std::max(lower, 0.0), .upper = upper});

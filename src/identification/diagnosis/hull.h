@@ -39,9 +39,10 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
 /// Makes intervals cover the model discrepancy. That of σ includes the stiffness after reversals.
 /// If the measured loop reaches slip, the interval of Tc is replaced by the union of three parts:
 /// the fitted value; the measured half gap with a margin on both sides; and the previous interval,
-/// clamped to the range of half gap, T* and value with the same margin. The margin combines the
-/// scatter of the cycles' half gaps with the force that the model misses. Closed intervals are
-/// marked as including the discrepancy; open ones do not change.
+/// clamped to the range of half gap, T* and value with the same margin. Of a loop that slips at its
+/// ends alone, and a model that misses little, T* takes the place of the half gap, and no lower end
+/// is raised. The margin combines the scatter of the cycles' half gaps with the force that the
+/// model misses. Closed intervals are marked as including the discrepancy; open ones do not change.
 void CoverDiscrepancy(const Estimates& fitted, FitResult& result);
 
 /// Raises the lower limit of Tc, of an interval that is open above, to the force that the contact
