@@ -30,10 +30,12 @@ constexpr std::array kRules = {
     RoleRules{"covariate", "--covariate", {}, {}, nullptr, nullptr, nullptr},
 };
 
+/// Units of a sensor's signal, which a gain makes a force or a displacement.
+constexpr std::string_view kSignalUnits = "|%|V|mV|Volt|Volts|volt|volts|A|mA|mV/V|count|counts|";
+
 constexpr std::string_view kOtherUnits =
-    "|-|%|V|mV|Volt|Volts|volt|volts|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/"
-    "s|°/s|m/s2|m/s^2|m/s²|"
-    "mm/s2|mm/min|N/s|kN/s|mV/V|cycle|cycles|segments|count|counts|#|J|W|mm/mm|1/s|";
+    "|-|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/s|°/s|m/s2|m/s^2|m/s²|mm/s2|mm/min|"
+    "N/s|kN/s|cycle|cycles|segments|#|J|W|mm/mm|1/s|";
 
 /// Words in brackets at the end of a name that are no unit of it.
 constexpr std::string_view kRemarks =
@@ -54,7 +56,9 @@ std::optional<Dimension> DimensionOf(std::string_view symbol) {
   return unit ? std::optional(unit->dimension) : std::nullopt;
 }
 
-bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
+bool IsKnown(std::string_view symbol) {
+  return FindUnit(symbol) || Lists(kSignalUnits, symbol) || Lists(kOtherUnits, symbol);
+}
 
 /// Returns the words of a name between blanks, " in words ": runs of letters; "dispMm" is two.
 std::string WordsIn(std::string_view name) {
@@ -179,13 +183,16 @@ void TakeUnitAmongWords(Column& column) {
       FindWord(rest);
       const bool is_end = end == plain.size();
       const bool is_long = CharactersIn(unit) > 1;
-      // "F_h" is a horizontal force, "F_rad" a radial one; "k_N" is nothing that is known.
-      const bool suits = rest.word.empty() ? is_end && is_long && FindUnit(unit)
-                                           : MayHaveRole(DimensionOf(unit), rest.role);
+      // "F_h" is a horizontal force, "F_V" a vertical one; "k_N" is nothing that is known.
+      const bool is_voltage = is_end && (unit == "mV" || (unit == "V" && rest.word.empty()));
+      const bool suits =
+          is_voltage || (rest.word.empty() ? is_end && is_long && FindUnit(unit)
+                                           : MayHaveRole(DimensionOf(unit), rest.role));
       const bool is_marked = is_end && (plain[at] == ',' || plain[at] == '/');
       if (!is_marked && !(suits && (is_end || is_long))) continue;
       const std::size_t number = rest.name.find_last_not_of("0123456789.") + 1;
-      if (suits && IsDigit(rest.name.back()) && (number == 0 || !IsLetter(rest.name[number - 1]))) {
+      if (suits && !is_voltage && IsDigit(rest.name.back()) &&
+          (number == 0 || !IsLetter(rest.name[number - 1]))) {
         // "5 kN" is none; "23.8 N" is in the unit that would be assumed.
         if (FindUnit(unit)->ToSi(1) != 1) column.unit = plain.substr(number, end - number);
         return;
@@ -272,6 +279,8 @@ Column ReadName(std::string_view header, std::string_view below) {
   column.dimension = DimensionOf(column.unit);
   return column;
 }
+
+bool IsOfSignal(std::string_view symbol) { return Lists(kSignalUnits, symbol); }
 
 bool LooksLikeUnit(std::string_view cell) {
   const std::string_view symbol = WithoutBrackets(cell);

@@ -73,6 +73,9 @@ Column ReadName(std::string_view header, std::string_view below = {});
 /// True for the symbol of a unit usual in such files (mm, N, V, bar...) and a word in brackets.
 bool LooksLikeUnit(std::string_view cell);
 
+/// True for the unit of a sensor's signal (V, counts...), which a gain makes another.
+bool IsOfSignal(std::string_view symbol);
+
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
 

@@ -65,13 +65,33 @@ std::string UnitOfStamp(double number) {
   return "";
 }
 
+constexpr std::string_view kSum =
+    "a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], with #3 for the "
+    "third column";
+
 /// Returns the column of a name, or of a number from 1 behind '#'; refuses one that is not there.
 std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_view at, Role role) {
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
   if (number >= 1 && number <= table.columns.size()) return *number - 1;
   if (const auto named = table.Named(name, role)) return *named;
-  Refuse("{}: no column is called '{}' (for the {}): {}", at, name, RulesOf(role).name,
-         table.Listing());
+  const bool is_formula = name.starts_with('(') || name.find('/') != name.npos;
+  Refuse("{}: no column is called '{}' (for the {}): {}{}{}", at, name, RulesOf(role).name,
+         table.Listing(), is_formula ? "; a formula must be " : "", is_formula ? kSum : "");
+}
+
+/// Returns what a column is called in a sum: its name, or its number where that has a sign of a sum
+/// or is another's too.
+std::string NameInSum(std::size_t column, const CsvTable& table) {
+  const auto is_like = [](const std::string& name) {
+    return [&name](const Column& of) { return of.header == name || of.name == name; };
+  };
+  for (const std::string& name : {table.columns[column].header, table.columns[column].name}) {
+    if (name.empty() || !IsLetter(name.front()) || name.find_first_of("+-*/([") != name.npos) {
+      continue;
+    }
+    if (std::ranges::count_if(table.columns, is_like(name)) == 1) return name;
+  }
+  return fmt::format("#{}", column + 1);
 }
 
 /// Reads a sum of products, each of numbers and at most one column.
@@ -79,10 +99,7 @@ void ReadSum(std::string_view rest, const CsvTable& table, std::string_view wher
   constexpr std::string_view kOperators = "+-*";
   const auto require = [&](bool is_sum) {
     if (is_sum) return;
-    Refuse(
-        "{}: must be a sum of columns with finite factors and an offset, like raw*0.0123-4.5 [N], "
-        "with #3 for the third column",
-        where);
+    Refuse("{}: must be {}", where, kSum);
   };
   const auto take = [&](std::size_t size) { rest = Trimmed(rest.substr(size)); };
   while (!rest.empty()) {
@@ -134,6 +151,8 @@ Quantity ReadQuantity(const std::string& given, const CsvTable& table, Role role
   return quantity;
 }
 
+bool IsRatio(std::string_view unit) { return unit == kRatioUnit || unit == "-"; }
+
 /// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
 /// @throws InputError for a unit that is none of the role's, and for columns in several units
 void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
@@ -144,6 +163,7 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   const Column& of = table.columns[first];
   const std::string label = table.Label(first);
   const bool is_time = quantity.role == Role::kTime;
+  const bool overrides = !quantity.given_unit.empty() && !of.unit.empty() && !quantity.is_scaled;
   std::string stamp = is_time && !quantity.is_scaled ? UnitOfStamp(of.first) : "";
   if (is_time && of.is_clock) stamp = quantity.given_unit = "s";
   const bool is_given = !quantity.given_unit.empty();
@@ -159,11 +179,24 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
   const bool is_known =
       unit && (unit->dimension == dimension || (may_be_linear && unit->dimension == rules.linear));
   if (!is_known && (is_given || (!symbol.empty() && !quantity.is_scaled) || stated.size() > 1)) {
+    const std::string where =
+        is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1);
+    const bool is_ratio = IsRatio(symbol);
+    if (is_ratio || IsOfSignal(symbol)) {
+      const bool by_load = is_ratio && quantity.role == Role::kForce && !is_torsional;
+      const std::string_view factor = by_load ? "LOAD" : "GAIN";
+      Refuse(
+          "{}: {} is {}, no {} before it is multiplied by {}: {} '{}*{} [{}]' with its number "
+          "for {}",
+          where, label, is_ratio ? "a ratio" : "in " + symbol, rules.name,
+          by_load ? "the load" : "a gain", rules.option, NameInSum(first, table), factor, assumed,
+          factor);
+    }
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]', "
         "or with a factor '#{}*0.001 [{}]'",
-        is_given ? table.file : fmt::format("{}:{}", table.Header(), first + 1), symbol, label,
-        rules.name, symbols, rules.option, first + 1, assumed, first + 1, assumed);
+        where, symbol, label, rules.name, symbols, rules.option, first + 1, assumed, first + 1,
+        assumed);
   }
   if (symbol.empty()) {
     quantity.has_no_unit = true;
@@ -173,6 +206,12 @@ void FindUnitOf(Quantity& quantity, const CsvTable& table, bool is_torsional,
                                 assumed));
   }
   quantity.unit = is_known ? *unit : *FindUnit(assumed);
+  if (const auto stated_unit = FindUnit(of.unit);
+      overrides && (!stated_unit || stated_unit->symbol != quantity.unit.symbol)) {
+    notes.push_back(fmt::format(
+        "{}: {} {} {}, and is taken in {}, as {} says", table.file, rules.name, label,
+        IsRatio(of.unit) ? "is a ratio" : "names " + of.unit, quantity.unit.symbol, rules.option));
+  }
   if (!stamp.empty() && stamp == quantity.unit.symbol) quantity.offset -= of.first;
 }
 

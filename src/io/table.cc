@@ -279,8 +279,11 @@ Layout FindLayout(std::string_view text, CsvTable& table) {
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
     for (const char decimal_mark : {'.', ','}) {
-      const bool occurs = delimiter == kBlanks || text.find(delimiter) != text.npos;
-      if (!occurs || decimal_mark == delimiter) continue;
+      // In quotes the delimiter may be a decimal mark, "-0,0754"; one behind 0 parts no thousands.
+      const bool occurs = decimal_mark != delimiter
+                              ? delimiter == kBlanks || text.find(delimiter) != text.npos
+                              : text.find("\"0,") != text.npos || text.find("\"-0,") != text.npos;
+      if (!occurs) continue;
       Reading reading(sampled, delimiter, decimal_mark);
       if (!best || reading.score() > best->score()) best = std::move(reading);
     }

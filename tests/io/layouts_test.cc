@@ -115,12 +115,14 @@ CrossheadBesideAnExtensometer 2 3 1.5e-3 2.5 - |
 CounterCalledN 2 3 1.5e-3 2.5 - | N,u [mm],Q [N]¶0,1.5,2.5¶1,2,3¶2,1.5,2.5¶
 ClampForceAndShearLoad 1 3 1.5e-3 2500 - | Displacement (mm),Clamp force (kN),Shear load (kN)¶1.5,5,2.5¶
   2,5,3¶
+ExcelWithQuotedDecimalCommas 2 3 1.5e-3 2.5 0.5 | "Zeit [s]","Weg [mm]","Kraft [N]"¶
+  "0,0","1,5","2,5"¶"0,5","-2","3,5"¶
 RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение, мм;Сила, кН¶0;1,5;2,5¶1;2;3¶
 )layouts";
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 57U);
+  EXPECT_EQ(layouts.size(), 58U);
   for (const Strings& layout : layouts) {
     SCOPED_TRACE(layout[0]);
     std::vector<std::string> head;
@@ -184,9 +186,6 @@ Displacement (0.01 mm),F [N] | 1 | 0.01 mm
 LVDT (5 mm),F [N] | 1 | 5 mm
 x [mm],Force cell 5 kN | 2 | 5 kN
 x [mm],Force (% FS) | 2 | % FS
-x [mm],Force % | 2 | %
-angle [rad],torque_percent | 2 | ratio
-x [mm],Normalized force | 2 | ratio
 x [&micro;m],F [N] | 1 | &micro;m
 x [?m],F [N] | 1 | ?m
 )names";
@@ -198,10 +197,29 @@ TEST(Units, ThatAreNoneAreRefusedWithARemedy) {
     EXPECT_THAT(said, StartsWith("loop.csv:1:" + row[1] + ": the unit '" + row[2] + "' of '"));
     EXPECT_THAT(said, HasSubstr("or with a factor '#" + row[1] + "*0.001 ["));
   }
+  for (const char* names :
+       {"x [mm],Force %", "angle [rad],torque_percent", "x [mm],Normalized force"}) {
+    EXPECT_THAT(Refusal(names + std::string("\n1,2\n2,3\n1,2\n")),
+                HasSubstr("before it is multiplied by"));
+  }
   for (const char* names : {"AI 1/10 Force [N],x10 [mm]", "Force X 2 [N],x [mm] 2",
                             "Kraft/AVE [N],Laser/Weg [mm]", "Load [23.8 N],x [mm] 10 Hz"}) {
     EXPECT_EQ(Read(names + std::string("\n1,2\n2,3\n1,2\n")).force.unit, "N") << names;
   }
+}
+
+TEST(Units, OfVoltsAreSeenBehindAName) {
+  for (const char* name : {"lc_V", "cell 2 V", "Force_mV"}) {
+    EXPECT_THAT(Refusal("x [mm]," + std::string(name) + "\n1,2\n2,3\n1,2\n", Choose("1", "2")),
+                HasSubstr("V, no force before it is multiplied by a gain"))
+        << name;
+  }
+  EXPECT_TRUE(Read("x [mm],F_V\n1,2\n2,3\n1,2\n").force.has_no_unit);  // vertical
+}
+
+TEST(Layouts, WithQuotedThousandsHaveNoDecimalCommas) {
+  EXPECT_THAT(Refusal("x [mm],F [N]\n\"1,234\",\"5\"\n\"2,345\",\"6\"\n"),
+              HasSubstr("without separators of thousands"));
 }
 
 TEST(Load, IsLeftOutWhereNoneIsAskedFor) {
@@ -246,9 +264,8 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
     const std::string text = "x [mm]," + (name + rows);
     EXPECT_THAT(
         Refusal(text, Choose("1", "2")),
-        AllOf(StartsWith("loop.csv:1:2: the unit '"),
-              HasSubstr(fmt::format("' of '{}' (column 2) is not known for the force", name)),
-              HasSubstr("or with a factor '#2*0.001 [N]'")));
+        AllOf(StartsWith(fmt::format("loop.csv:1:2: '{}' (column 2) is a ratio, no force", name)),
+              HasSubstr("*LOAD [N]' with its number for LOAD")));
     EXPECT_EQ(Read(text, Choose("1", "#2*50 [N]")).record.force.front(), 5.0);
     EXPECT_EQ(Read(text, Choose("1", "2 [N]")).record.force.front(), 0.1);
     EXPECT_EQ(Refusal(text), Refusal(text, Choose("1", "2"))) << "a load is no friction force";
@@ -257,12 +274,12 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
   for (const char* names :
        {"Load [N],Friction,x [mm]", "荷重(N),f,変位(mm)", "Last,Reibungszahl,Weg"}) {
     EXPECT_THAT(Refusal(names + std::string("\n50,0.1,0\n51,0.3,1\n50,-0.3,0\n")),
-                HasSubstr("the unit 'ratio' of"))
+                HasSubstr("is a ratio, no force"))
         << names;
   }
   EXPECT_EQ(Read("t,x,F,mu\ns,mm,N,-\n0,1,2,0.1\n1,2,3,0.2\n").record.covariates.front().unit, "-");
   EXPECT_EQ(Read("x [mm],mu,Load [N]\n0,0.1,9\n1,0.3,-9\n0,0.1,9\n").force.index, 3U);
-  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("the unit 'ratio' of"));
+  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("--force 'mu*LOAD [N]'"));
 }
 
 TEST(Evidence, OfALoadThatKeepsItsSignBesideAForceThatDoesNotIsOfANormalLoad) {
@@ -348,7 +365,9 @@ TEST(Expression, RefusesWhatItCannotBe) {
                                     {"#4-#3", "no column is called '#4'"},
                                     {"F+H", "no column is called 'H'"},
                                     {"F*0", "must be a sum of columns"},
-                                    {"F-G", "the unit 'V' of 'F [V]' (column 2) is not known"}}) {
+                                    {"(F-2)/4", "no column is called '(F'"},
+                                    {"(F-2)/4", "; a formula must be a sum of columns"},
+                                    {"F-G", "--force 'F*GAIN [N]' with its number for GAIN"}}) {
     EXPECT_THAT(Refusal("x [V],F [V],G [V]\n1,2,3\n2,3,4\n", Choose("x [m]", force)),
                 HasSubstr(said));
   }

@@ -126,6 +126,12 @@ TEST(RecordReader, NotesWhatItAssumes) {
                      "loop.csv: force 'F' (column 2) names no unit: taken as N; "
                      "--force '2 [N]' says so"}));
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"), Strings{});
+  EXPECT_EQ(Notes("x [um],mu\n1.5,2.5\n", Choose("1 [mm]", "2 [N]")),
+            (Strings{"loop.csv: displacement 'x [um]' (column 1) names um, and is taken in mm, as "
+                     "--displacement says",
+                     "loop.csv: force 'mu' (column 2) is a ratio, and is taken in N, as --force "
+                     "says"}));
+  EXPECT_EQ(Notes("x [um],F [mV]\n1.5,2.5\n", Choose("1 [µm]", "#2*3 [N]")), Strings{});
   EXPECT_EQ(Notes("millis,x [m],F [N]\n1,1.5,2.5\n"), Strings{});
 }
 
@@ -152,9 +158,12 @@ x¶1¶ | - | - | : no column for the force: the columns are 'x' (column 1): choo
 x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
    must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]', or with a factor
    '#1*0.001 [m]'
-¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
-   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
-   --force '3 [N]', or with a factor '#3*0.001 [N]'
+¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: 'F [V]' (column 3) is in V, no force before it is
+   multiplied by a gain: --force 'F*GAIN [N]' with its number for GAIN
+t,x [m],lc_V¶1,2,3¶ | - | lc_V | :1:3: 'lc_V' (column 3) is in V, no force before it is multiplied by
+   a gain: --force 'lc_V*GAIN [N]' with its number for GAIN
+x [m],V,V [V]¶1,2,3¶ | - | 3 | :1:3: 'V [V]' (column 3) is in V, no force before it is multiplied by
+   a gain: --force '#3*GAIN [N]' with its number for GAIN
 t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'x10' of 'F (N x10)' (column 3) is not known
    for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
    --force '3 [N]', or with a factor '#3*0.001 [N]'
