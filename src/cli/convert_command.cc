@@ -23,14 +23,17 @@ struct ConvertOptions {
   std::string input_lines_path;
 };
 
-/// Reads what `mindahl fit --json` wrote, or fits a record.
-Json ReadFit(const std::string& file, const io::RecordColumns& columns) {
+/// Reads what `mindahl fit --json` wrote, or fits a record and says what was assumed of it.
+Json ReadFit(const std::string& file, const io::RecordColumns& columns, Console& console) {
   std::ifstream stream(file);
   if (!stream) Refuse("{}: cannot be read", file);
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
   if (fit.is_discarded() && !file.ends_with(".json")) {
     const FitRequest request{.files = {file}, .columns = columns};
-    return report::DocumentOf(FitRecords(request, ReadRecords(request)));
+    const report::Report report = FitRecords(request, ReadRecords(request));
+    Say("convert: note", report.notes, console);
+    if (!report.check.empty()) Say("convert: note", {report.check}, console);
+    return report::DocumentOf(report);
   }
   const Json schema = report::At(fit, "/schema");
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
@@ -105,7 +108,7 @@ void RunConvert(const ConvertOptions& given, Console& console) {
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   std::vector<std::string> left_out;  // terms of the fit that no target has
   if (!request.fit.empty()) {
-    const Json fit = ReadFit(request.fit, request.columns);
+    const Json fit = ReadFit(request.fit, request.columns, console);
     TakeFit(fit, request);
     if (target.form == convert::Form::kSpring && !given.law.slip_force) TakeLoad(fit, request);
     if (!given.amplitude && report::At(fit, "/parameters/load_exponent").is_object() &&

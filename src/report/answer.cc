@@ -333,8 +333,9 @@ std::string ColumnsText(const io::RecordFile& file, int force_sense) {
     if (!column) return;
     const bool has_unit = !column.has_no_unit && column.name.find(column.unit) != std::string::npos;
     columns.push_back(fmt::format(
-        "{}{} ({}{}){}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
-        column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit));
+        "{}{} ({}{}){}{}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
+        column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit,
+        column.has_no_unit ? " (assumed)" : ""));
   };
   add(file.is_torsional ? "angle" : "displacement", file.displacement, "");
   add(file.is_torsional ? "torque" : "force", file.force, force_sense < 0 ? ", opposite sign" : "");

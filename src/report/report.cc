@@ -85,6 +85,7 @@ void CollectWarnings(Report& report) {
 constexpr double kMostPressure = 1e11;  // [Pa], more than any solid bears
 constexpr double kLargestBall = 10.0;   // [m], a radius of a body on a rig
 constexpr double kMostOff = 200.0;      // factor by which Hertz's radius may be missed
+constexpr double kWidestLoop = 1.0;     // [m], an amplitude that no rig has
 constexpr double kMostFriction = 5.0;
 constexpr double kLeastFriction = 1e-3;
 
@@ -95,6 +96,20 @@ std::string LargeRadius(const Report& report) {
     if (!radius || std::isinf(radius->value) || std::abs(radius->value) < kLargestBall) continue;
     return fmt::format("--radius-{} {:.4g} is {}: in mm it would be {}", k + 1, radius->value,
                        Quantity(radius->value, "m", 3), Quantity(radius->value / 1000, "m", 3));
+  }
+  return "";
+}
+
+/// Counts and volts without a unit are taken as metres.
+std::string LargeAmplitude(const Report& report) {
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const io::ChosenColumn& column = report.records[r].displacement;
+    const double amplitude = report.fit.records[r].facts.amplitude;
+    if (!column.has_no_unit || amplitude < kWidestLoop) continue;
+    return fmt::format(
+        "the displacement names no unit, and ±{} is no loop: give its unit, or the gain of counts "
+        "and volts, --displacement '#{}*GAIN [m]'",
+        Quantity(amplitude, "m", 3), column.index);
   }
   return "";
 }
@@ -188,6 +203,7 @@ std::string WhatToCheck(const Report& report) {
   if (std::string found = OppositeSigns(report); !found.empty()) return found;
   if (!report.is_torsional()) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
+    if (std::string found = LargeAmplitude(report); !found.empty()) return found;
     if (std::string found = ImpossibleContact(report); !found.empty()) {
       // An input that no solid can have is the more likely error.
       const std::vector<std::string> doubts = contact::DoubtsAbout(report.known);

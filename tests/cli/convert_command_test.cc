@@ -72,6 +72,16 @@ TEST_F(Convert, FitsARecordWithTheColumnsThatAreChosen) {
   EXPECT_EQ(made["from"]["slip_force"], Value(fitted, "slip_force"));
 }
 
+TEST_F(Convert, SaysWhatWasAssumedOfARecord) {
+  std::string text = "x,F\n";
+  for (const auto& row : testing::Numbers(FileContent(SampleRecord()))) {
+    text += fmt::format("{},{}\n", 1e9 * row[1], row[2]);
+  }
+  const std::string said = Done("convert --to dahl " + Write("counts.csv", text)).err;
+  EXPECT_THAT(said, HasSubstr("force 'F' (column 2) names no unit: taken as N"));
+  EXPECT_THAT(said, HasSubstr("or the gain of counts and volts, --displacement '#1*GAIN [m]'"));
+}
+
 TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   const auto command = [&](const std::string& text) {
     return "convert --to lammps " + Write("written.json", text) + " ";
