@@ -193,15 +193,15 @@ def simulate(
 
 def plan(
     record: Any = None, *, sigma: Optional[float] = None, alpha: Optional[float] = None,
-    slip_force: Optional[float] = None, rig_stiffness: Optional[float] = None,
-    force_noise: Optional[float] = None, displacement_noise: float = 0.0,
+    slip_force: Optional[float] = None, model: Optional[str] = None,
+    rig_stiffness: Optional[float] = None, force_noise: Optional[float] = None, displacement_noise: float = 0.0,
     amplitude: Union[None, float, Sequence[float]] = None, cycles: float = 3.0,
     samples_per_cycle: int = 200, want: Optional[Mapping[str, Union[float, str]]] = None,
 ) -> Report:
     """Plans a measurement: the standard errors that a loop of each amplitude would give.
 
     The contact, one of
-        sigma [N/m], alpha [-] (1/3), slip_force Tc [N];
+        sigma [N/m], alpha [-] (1/3), slip_force Tc [N], model "mindlin-dahl" (default) or "dahl";
         record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives law and
             noise.
     rig_stiffness: known, of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations.

@@ -16,6 +16,7 @@ namespace {
 
 struct PlanOptions {
   LawRequest law;
+  const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
   std::string record;
   io::RecordColumns columns;
   std::optional<double> rig_stiffness;
@@ -109,6 +110,7 @@ Plan MakePlan(const PlanOptions& options) {
     TakeRecord(options, plan);
   } else {
     expected.law = ResolveLaw(options.law);
+    expected.model = options.model;
     if (!options.force_noise) {
       Refuse(
           "--force-noise missing: give the standard deviation of the force's noise, or --record");
@@ -166,7 +168,8 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
   constexpr int kDigits = 3;
   const Expectation& expected = plan.expected;
   const models::BranchLaw& law = expected.law;
-  std::string text = fmt::format("expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N",
+  std::string text = fmt::format("expected: {}sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N",
+                                 expected.model->name == "dahl" ? "Dahl's own law, " : "",
                                  law.tangential_stiffness, law.shape_exponent, law.slip_force);
   if (options.rig_stiffness) text += fmt::format(", rig {:.6g} N/m", *options.rig_stiffness);
   text += fmt::format(
@@ -194,7 +197,8 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
 std::string ToJson(const Plan& plan) {
   const Expectation& expected = plan.expected;
   Json contact = report::LawJson(expected.law);
-  contact.update({{"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
+  contact.update({{"model", expected.model->name},
+                  {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
                   {"force_noise", expected.force_noise},
                   {"displacement_noise", expected.displacement_noise},
                   {"gross_slip_displacement", plan.slip}});
@@ -256,10 +260,16 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json"},
       &RunPlan);
-  AddLawParameters(OptionGroup(command, "Parameters"), options.law);
+  const OptionGroup parameters(command, "Parameters");
+  AddLawParameters(parameters, options.law);
+  CLI::Option* const model = parameters.AddChoice(
+      "--model", options.model,
+      {{"mindlin-dahl", options.model}, {"dahl", models::FindFrictionModel("dahl")}},
+      "law of these parameters: Masing's, or Dahl's own, as of a joint");
   const OptionGroup expected(command, "What is expected");
   CLI::Option* const record = expected.Add(
       "--record", options.record, "take law and noise from a fit of this record instead", "FILE");
+  model->excludes(record);
   AddColumnOptions(command, options.columns);
   for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column",
                            "--sample-rate", "--encoding"}) {

@@ -45,6 +45,23 @@ TEST_F(PlanCommand, RecommendsAMarginBeyondSlipOfASharpKnee) {
   }
 }
 
+TEST_F(PlanCommand, PlansForDahlsOwnLaw) {
+  const Words loop = "--sigma 2500 --alpha 1 --slip-force 3 --force-noise 0.015 --amplitude 0.0036";
+  const auto error = [&](const Words& more) {
+    const json plan = JsonOf("plan" + loop + more);
+    return plan["loops"][0]["parameters"]["slip_force"]["standard_error"].get<double>();
+  };
+  identification::Expectation expected{
+      .law = {2500, 1, 3}, .model = models::FindFrictionModel("dahl"), .force_noise = 0.015};
+  EXPECT_NEAR(error("--model dahl") / *identification::ExpectFit(expected, {.amplitude = 0.0036})
+                                           .Find("slip_force")
+                                           ->standard_error,
+              1.0, 1e-9);
+  EXPECT_LT(error("--model dahl"), 0.5 * error({}));
+  EXPECT_EQ(JsonOf("plan" + loop + "--model dahl")["expected"]["model"], "dahl");
+  EXPECT_EQ(RunCommand("plan --record x.csv --model dahl").status, kBadInput);
+}
+
 TEST_F(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
   const std::string clean = Simulated("--lambda 2 --cycles 3 --noise-force 0.05", "clean.csv");
   // The same in µm and mN, behind another column, without a header.
