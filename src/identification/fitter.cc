@@ -359,6 +359,7 @@ FitResult FitWithin(std::span<const RecordView> records, Depth depth, const FitO
   for (const auto& [name, bounds] : options.bounds) {
     const auto estimate = std::ranges::find(result.parameters, name, &ParameterEstimate::name);
     if (estimate == result.parameters.end()) continue;
+    estimate->bounds = bounds;
     for (std::optional<double>* const end : {&estimate->lower95, &estimate->upper95}) {
       if (*end) *end = std::clamp(**end, bounds.lower, bounds.upper);
     }

@@ -111,9 +111,10 @@ class Writer {
     if (IsMoot(report_, estimate)) return;
     std::vector<std::string> parts = {TextOf(symbol, estimate), remark};
     for (const ContactQuantity& quantity : report_.contact) {
-      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
+      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's. From a bound
+      // that was given nothing follows.
       const bool is_said =
-          quantity.parameter != estimate.name ||
+          quantity.parameter != estimate.name || estimate.is_at_given_bound() ||
           (quantity.name == "compliance" && report_.ValueOf("contact_radius")) ||
           (quantity.name == "equivalent_radius" && report_.ValueOf("sigma_over_hertz_mindlin"));
       if (is_said) continue;
@@ -139,7 +140,8 @@ class Writer {
 
   void AddFriction() {
     const ParameterEstimate& slip_force = *fit_.Find("slip_force");
-    const ContactQuantity* load = report_.Find("normal_load");
+    const ContactQuantity* load =
+        slip_force.is_at_given_bound() ? nullptr : report_.Find("normal_load");
     std::string remark;
     if (load != nullptr && load->value &&
         !QuantityText(*report_.Find("friction_coefficient")).empty()) {
@@ -389,7 +391,7 @@ std::vector<Line> DetailLines(const Report& report) {
                                         CellText(document["initial_state"]))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
-    const bool is_nothing = WhatIsShown(estimate).is_held && estimate.value == 0;
+    const bool is_nothing = estimate.status == ParameterStatus::kFixed && estimate.value == 0;
     const bool is_said = std::ranges::find(terms, &estimate) != terms.end();
     if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
     lines.push_back({"parameter", fmt::format("{} {}", estimate.name, ValueText(estimate))});

@@ -32,7 +32,7 @@ struct Dependence {
   /// the parameter falls; empty where that end is open.
   [[nodiscard]] std::optional<double> WayTo(bool up) const {
     const Shown shown = WhatIsShown(*parameter);
-    if (shown.is_held || exponent == 0) return 0.0;
+    if (parameter->status == ParameterStatus::kFixed || exponent == 0) return 0.0;
     const bool rises = up == (exponent * (factor == 0 ? 1 : factor) > 0);
     const std::optional<double>& end = rises ? shown.upper : shown.lower;
     if (!end) return std::nullopt;
@@ -145,7 +145,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   const double alpha = shape.status == ParameterStatus::kFixed ? shape.value : kThird;
   // It is that of Mindlin's contact, and slip is never complete where α is 1 or more.
   if (sigma.is_known() && slip_force.is_known() && alpha < 1 &&
-      !TestAlpha(fit).is_rejected.value_or(false)) {
+      !(shape.is_known() && ExcludesAThird(shape))) {
     Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1}, slip);
   }
   ContactQuantity& load = quantities.emplace_back("normal_load", "N", "N");
@@ -164,6 +164,7 @@ AlphaTest TestAlpha(const FitResult& fit) {
   const ParameterEstimate& alpha = *fit.Find("alpha");
   if (alpha.status == ParameterStatus::kFixed || !alpha.is_known()) return test;
   test.minus_third = alpha.value - kThird;
+  if (alpha.bounds && (kThird < alpha.bounds->lower || kThird > alpha.bounds->upper)) return test;
   test.is_rejected = ExcludesAThird(alpha);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {

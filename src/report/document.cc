@@ -160,7 +160,8 @@ Reasons ReasonsOf(const Report& report) {
           {"contact.normal_load.ci95", "it is exact, or not known"},
           {"mapping.sigma_over_hertz_mindlin",
            "it needs what is not known of the contact, or sigma is open"},
-          {"mapping", "alpha is held, at a bound or not identifiable, or it is a torque"},
+          {"mapping",
+           "alpha is held, kept off 1/3 by bounds, at one or not identifiable, or it is a torque"},
           {"compared", "there are no cycles to hold out, or a fit without them failed"},
           {"next", "nothing that was tried helps by a tenth"}};
 }

@@ -143,7 +143,7 @@ std::string_view JudgementOf(std::string_view verdict) {
 
 std::string_view JudgementOf(const ParameterEstimate& estimate) {
   const Shown shown = WhatIsShown(estimate);
-  if (shown.is_held) return kPlain;
+  if (!shown.is_given.empty()) return kPlain;
   if (!shown.value && !shown.lower && !shown.upper) return kBad;
   return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
 }
@@ -151,18 +151,23 @@ std::string_view JudgementOf(const ParameterEstimate& estimate) {
 Shown WhatIsShown(const ParameterEstimate& estimate) {
   const std::optional<double>& lower = estimate.lower95;
   const std::optional<double>& upper = estimate.upper95;
-  if (estimate.status == ParameterStatus::kFixed) return {estimate.value, {}, {}, true};
+  if (estimate.status == ParameterStatus::kFixed) return {estimate.value, {}, {}, "held"};
   if (estimate.identifiability == Identifiability::kBoundedBelow) return {{}, lower, {}};
   if (!estimate.is_known()) return {};
+  if (estimate.is_at_given_bound()) {
+    return {estimate.value, lower, upper, "at the bound that was given"};
+  }
   if (estimate.status == ParameterStatus::kAtLowerBound) return {{}, {}, upper};
   if (estimate.status == ParameterStatus::kAtUpperBound && !upper) return {{}, lower, {}};
   return {estimate.value, lower, upper};
 }
 
 std::string ValueText(const ParameterEstimate& estimate) {
-  const auto [value, lower, upper, is_held] = WhatIsShown(estimate);
+  const auto [value, lower, upper, is_given] = WhatIsShown(estimate);
+  if (!is_given.empty())
+    return fmt::format("{} ({})", QuantityWithInterval(value, {}, {}, estimate.unit), is_given);
   const std::string text = QuantityWithInterval(value, lower, upper, estimate.unit);
-  return text.empty() ? "not determined" : is_held ? text + " (held)" : text;
+  return text.empty() ? "not determined" : text;
 }
 
 std::string MisfitShare(double over_half_gap) {

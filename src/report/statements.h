@@ -62,13 +62,13 @@ std::string_view JudgementOf(const ParameterEstimate& estimate);
 
 /// Holds what is shown of a parameter: no number that the record does not determine, nor where the
 /// search stopped at a limit. It is the estimate with its interval, one end of it alone, the value
-/// that was given, or nothing.
+/// or the bound that was given, or nothing.
 struct Shown {
   std::optional<double> value, lower, upper;
-  bool is_held = false;
+  std::string_view is_given = {};  ///< "held" or "at the bound that was given"; "" of an estimate
 
   /// True for an estimate with its interval.
-  [[nodiscard]] bool is_estimate() const { return value && !is_held; }
+  [[nodiscard]] bool is_estimate() const { return value && is_given.empty(); }
 };
 Shown WhatIsShown(const ParameterEstimate& estimate);
 

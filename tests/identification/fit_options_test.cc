@@ -136,10 +136,12 @@ TEST(FitOptions, BoundThatExcludesTheTruthHoldsAndIsReported) {
   EXPECT_EQ(lower.status, ParameterStatus::kAtLowerBound);
   EXPECT_NEAR(lower.value, 0.5, rounding);
   EXPECT_FALSE(lower.standard_error);
+  EXPECT_TRUE(lower.is_at_given_bound());
   const ParameterEstimate upper = alpha_within({0.0, 0.3});
   EXPECT_EQ(upper.status, ParameterStatus::kAtUpperBound);
   EXPECT_NEAR(upper.value, 0.3, rounding);
   EXPECT_EQ(alpha_within({0.0, 0.5}).status, ParameterStatus::kFree);
+  EXPECT_FALSE(alpha_within({0.0, 0.5}).is_at_given_bound());
 }
 
 TEST(FitOptions, NarrowBoundsAboutTheTruthKeepTheFit) {

@@ -183,6 +183,46 @@ TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
               HasSubstr("μ 0.8000 (0.7840 … 0.8000), Tc 40.00 N (39.20 … 40.00)"));
 }
 
+TEST(Answer, SaysThatAValueIsAtTheBoundThatWasGiven) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  auto& slip_force = input.fit.parameters[2];
+  slip_force.status = ParameterStatus::kAtUpperBound;
+  slip_force.identifiability = Identifiability::kEffective;
+  slip_force.bounds = {0.0, slip_force.value};
+  EXPECT_EQ(LineOf(input, "friction"), "Tc 40 N (at the bound that was given)");
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
+  input.fit.parameters[0].identifiability = Identifiability::kNotIdentifiable;
+  input.fit.parameters[1].identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("; use what is measured"));
+}
+
+TEST(Answer, TestsNoThirdThatTheBoundsExclude) {
+  ReportInput input = MadeInput();
+  auto& alpha = input.fit.parameters[1];
+  alpha.value = 0.4;
+  alpha.lower95 = 0.4;
+  alpha.upper95 = 0.41;
+  alpha.status = ParameterStatus::kAtLowerBound;
+  alpha.bounds = {0.4, 0.9};
+  EXPECT_EQ(LineOf(input, "shape"),
+            "α 0.4 (at the bound that was given), Mindlin's 1/3 is not tested");
+  alpha.bounds = {0.3, 0.9};  // where the data alone exclude it
+  alpha.status = ParameterStatus::kFree;
+  EXPECT_THAT(LineOf(input, "shape"), HasSubstr("Mindlin's 1/3 is rejected"));
+}
+
+TEST(Answer, AsksForTheGainOfAnAmplitudeThatNoLoopHas) {
+  ReportInput input = MadeInput();
+  input.fit.records[0].facts.amplitude = 300.0;
+  EXPECT_EQ(LineOf(input, "check"), "");
+  input.records[0].displacement = {.name = "enc", .index = 2, .unit = "m", .has_no_unit = true};
+  EXPECT_EQ(LineOf(input, "check"),
+            "the displacement names no unit, and ±300 m is no loop: give its unit, or the gain of "
+            "counts and volts, --displacement '#2*GAIN [m]'");
+  EXPECT_THAT(LineOf(input, "columns"), HasSubstr("displacement 'enc' (2) in m (assumed)"));
+}
+
 TEST(Answer, ListsTheModelsThatWereCompared) {
   ReportInput input = MadeInput();
   const auto* const dahl = models::FindFrictionModel("dahl");

@@ -69,13 +69,17 @@ struct ParameterEstimate {
   std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
-  bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
+  bool includes_discrepancy = false;    ///< true if the interval allows for the model discrepancy
+  std::optional<Interval> bounds = {};  ///< those that the user gave
   Identifiability identifiability = Identifiability::kNotIdentifiable;
 
   /// True if the search stopped at a bound, of the user's or of the program's own.
   [[nodiscard]] bool is_at_bound() const {
     return status == ParameterStatus::kAtLowerBound || status == ParameterStatus::kAtUpperBound;
   }
+  /// True if the search stopped at a bound of the user's that is not the sign alone: the value is
+  /// the user's, not the record's.
+  [[nodiscard]] bool is_at_given_bound() const { return is_at_bound() && bounds && value != 0; }
   /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
     return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;

@@ -33,7 +33,8 @@ std::vector<ContactQuantity> DescribeContact(const identification::FitResult& fi
                                              const contact::KnownContact& known);
 
 /// Tests the fitted exponent against Mindlin's 1/3, which is rejected if and only if it lies
-/// outside the interval of α. No test is made where α was held or is not identifiable.
+/// outside the interval of α. No test is made where α was held, is not identifiable, or has bounds
+/// that exclude 1/3.
 struct AlphaTest {
   std::optional<double> minus_third;  ///< α − 1/3; empty where α was held or is not known
   std::optional<bool> is_rejected;
