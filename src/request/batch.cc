@@ -29,7 +29,7 @@ namespace {
 /// A quantity that repeats of a test have in common, by the names of its columns.
 struct Repeated {
   std::string name;
-  std::string parameter;  // whose errors it has; "" of what is measured, which states none
+  std::string parameter;  // whose error it has; "" of what is measured, which states none
   std::string_view unit;
 };
 const auto kRepeated = std::to_array<Repeated>({{"sigma", "sigma", "N/m"},
@@ -86,14 +86,16 @@ constexpr std::string_view kSeveralLaws =
     "fits are by several laws, whose parameters are not compared: --model NAME fits all by one";
 
 /// Returns the scatter of each quantity of two files or more, and the rms of their stated errors.
-Json RepeatRows(const Json& table, bool has_several_laws) {
+/// @param table  with a row an entry
+Json RepeatRows(const Json& table, std::span<const BatchEntry> entries, bool has_several_laws) {
   const double seen_loop = identification::Thresholds().seen_loop;
   Json repeats = Json::object();
   for (const auto& [name, parameter, unit] : kRepeated) {
     if (has_several_laws && !parameter.empty()) continue;
     std::vector<double> values;
     std::vector<double> squares;  // of the errors
-    for (const Json& row : table) {
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      const Json& row = table[k];
       const Json& r_squared = row["r_squared"];
       const bool describes = row["warnings"].get_ref<const std::string&>().find(
                                  "model_inadequate") == std::string::npos;
@@ -101,10 +103,11 @@ Json RepeatRows(const Json& table, bool has_several_laws) {
       if (!row["done"].get<bool>() || !is_loop || row[name].is_null()) continue;
       const double value = row[name];
       if (!parameter.empty()) {
-        const Json& error = row[parameter + "_error"];
+        const auto error = entries[k].errors.find(parameter);
+        if (error == entries[k].errors.end()) continue;
         // μ = Tc/N scatters as Tc does.
-        const double factor = value / row[parameter].get<double>();
-        if (!error.is_null()) squares.push_back(std::pow(error.get<double>() * factor, 2));
+        const double square = std::pow(error->second * value / row[parameter].get<double>(), 2);
+        if (square > 0 && std::isfinite(square)) squares.push_back(square);
       }
       values.push_back(value);
     }
@@ -161,7 +164,12 @@ BatchEntry FitSource(const std::string& name, Strictness strictness,
     entry.verdict = report::VerdictWord(report);
     for (const char* parameter : report::kLawParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
-      if (estimate != nullptr) entry.parameters.push_back(report::ValueText(*estimate));
+      if (estimate == nullptr) continue;
+      entry.parameters.push_back(report::ValueText(*estimate));
+      const report::Shown shown = report::WhatIsShown(*estimate);
+      const bool is_held = estimate->status == identification::ParameterStatus::kFixed;
+      if (!shown.is_estimate() && !is_held) continue;
+      entry.errors[parameter] = report.fit.ErrorOf(*estimate);
     }
   } catch (const InputError& error) {
     entry.fault = error.what();
@@ -212,7 +220,7 @@ BatchAnswer AnswerOf(std::span<const BatchEntry> entries, const std::string& out
   // Parameters of one law are no repeats of another's.
   const bool has_several_laws = laws.size() > 1;
   const std::string_view note = has_several_laws ? kSeveralLaws : "";
-  const Json repeats = RepeatRows(table, has_several_laws);
+  const Json repeats = RepeatRows(table, entries, has_several_laws);
   const std::string title = fmt::format(
       "{} of {} files fitted", std::ranges::count_if(entries, &BatchEntry::done), entries.size());
   return {.rows = report::Dump(table),

@@ -30,6 +30,22 @@ TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
   EXPECT_EQ(entry.fault, "the disk is full");
 }
 
+TEST(FitSource, StatesTheErrorOfAWidenedIntervalAndNoneAtABound) {
+  std::vector<io::RecordFile> bent = CleanRecord();  // by a spring that hardens
+  for (std::size_t k = 0; k < bent[0].record.force.size(); ++k) {
+    bent[0].record.force[k] += 1.5 * std::pow(bent[0].record.displacement[k] / 3e-6, 3);
+  }
+  report::Report report;
+  const BatchEntry entry = FitSource("loop", Strictness::kNone, [&] {
+    return report = FitRecords({.fit = {.bounds = {{"alpha", {0.5, 2.0}}}}}, bent);
+  });
+  const auto& sigma = *report.fit.Find("sigma");
+  ASSERT_TRUE(sigma.includes_discrepancy);
+  EXPECT_GT(entry.errors.at("sigma"), 2 * sigma.standard_error.value_or(0.0));
+  EXPECT_EQ(entry.errors.at("sigma"), report.fit.ErrorOf(sigma));
+  EXPECT_FALSE(entry.errors.contains("alpha"));
+}
+
 TEST(FitFiles, GoesOnAfterAFileThatCannotBeRead) {
   const FitRequest request{.files = {"none_1.csv", "none_2.csv", "none_3.csv", "none_4.csv"}};
   const std::vector<BatchEntry> entries = FitFiles(request, Strictness::kNone, 2);
@@ -44,7 +60,6 @@ TEST(FitFiles, GoesOnAfterAFileThatCannotBeRead) {
 struct Made {
   double slip_force = 0.0;
   double error = 0.0;
-  double half_width = 0.0;  // of the interval
   std::string verdict = "identifiable";
   double half_gap = 0.0;
   bool done = true;
@@ -54,11 +69,8 @@ struct Made {
 
 BatchEntry EntryOf(const Made& made, const std::string& file) {
   nlohmann::ordered_json json;
-  json["parameters"]["slip_force"] = {
-      {"value", made.slip_force},
-      {"standard_error", made.error},
-      {"ci95", {made.slip_force - made.half_width, made.slip_force + made.half_width}},
-      {"identifiability", made.verdict}};
+  json["parameters"]["slip_force"] = {{"value", made.slip_force},
+                                      {"identifiability", made.verdict}};
   json["measured"]["half_gap"]["value"] = made.half_gap;
   json["residuals"]["r_squared"] = made.r_squared;
   for (const std::string& code : made.warnings) json["warnings"].push_back({{"code", code}});
@@ -66,6 +78,8 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
   if (!made.done) entry.fault = "not done";
   entry.file = file;
   entry.fit = json.dump();
+  const bool is_known = made.verdict == "identifiable" || made.verdict == "effective";
+  if (is_known && made.error > 0) entry.errors["slip_force"] = made.error;
   return entry;
 }
 
@@ -81,20 +95,18 @@ nlohmann::json RepeatsOf(const std::vector<Made>& made) {
   return nlohmann::json::parse(AnswerOf(EntriesOf(made)).json)["repeats"];
 }
 
-constexpr double kNormal95 = 1.959963984540054;
 constexpr double kRounding = 1e-12;
 
 TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   const std::vector<std::string> kInadequate = {"model_inadequate"};
-  // Errors of 3, and of 1 with an interval that is inflated to 4, which is no scatter.
-  const auto repeats = RepeatsOf({{40, 3, 3 * kNormal95, "identifiable", 41},
-                                  {48, 1, 4 * kNormal95, "effective", 43},
-                                  {1000, 1, kNormal95, "bounded_below", 48},
-                                  {2000, 1, kNormal95, "identifiable", 99, /*done=*/false},
+  const auto repeats = RepeatsOf({{40, 3, "identifiable", 41},
+                                  {48, 1, "effective", 43},
+                                  {1000, 1, "bounded_below", 48},
+                                  {2000, 1, "identifiable", 99, /*done=*/false},
                                   // no loop is seen
-                                  {9, 1, 1, "not_identifiable", 1, true, 0.05, kInadequate},
+                                  {9, 1, "not_identifiable", 1, true, 0.05, kInadequate},
                                   // small beside readings that a loss weighs down
-                                  {44, 2, 2 * kNormal95, "identifiable", 44, true, 0.05}});
+                                  {44, 2, "identifiable", 44, true, 0.05}});
   const auto& slip_force = repeats["slip_force"];
   EXPECT_EQ(slip_force["files"], 3);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);
@@ -110,9 +122,8 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
 }
 
 TEST(Repeats, CompareNoParametersOfSeveralLaws) {
-  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2, "identifiable", 39},
-                                               {50, 1, 2, "identifiable", 39},
-                                               {42, 1, 2, "identifiable", 39}});
+  std::vector<BatchEntry> entries = EntriesOf(
+      {{40, 1, "identifiable", 39}, {50, 1, "identifiable", 39}, {42, 1, "identifiable", 39}});
   const auto set_law = [&](std::size_t k, const char* law) {
     auto json = nlohmann::ordered_json::parse(entries[k].fit);
     json["model"] = law;
@@ -129,7 +140,7 @@ TEST(Repeats, CompareNoParametersOfSeveralLaws) {
 }
 
 TEST(BatchIndex, LinksPagesAndReportsParametersAndFaults) {
-  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}});
+  std::vector<BatchEntry> entries = EntriesOf({{40, 1}, {70, 1}});
   entries.emplace_back().file = "d.csv";
   entries[0].file = "a <b>.csv";
   entries[0].verdict = "adequate";
@@ -187,7 +198,7 @@ TEST(BatchTable, HasEachNumberInItsColumn) {
 }
 
 TEST(BatchTable, HasNoValueThatIsNotKnown) {
-  const auto made = EntriesOf({{1234, 1, kNormal95, "bounded_below", 48}});
+  const auto made = EntriesOf({{1234, 1, "bounded_below", 48}});
   EXPECT_THAT(AnswerOf(made).table, Not(HasSubstr("1234,")));
   EXPECT_THAT(AnswerOf(made).table, HasSubstr("bounded_below"));
 }

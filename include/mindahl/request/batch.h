@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,8 @@ struct BatchEntry {
   std::vector<std::string> notes = {};       ///< assumptions of the run, one sentence each
   std::string verdict = {};                  ///< one word for the fit's adequacy
   std::vector<std::string> parameters = {};  ///< σ, α and Tc in words
+  /// FitResult::ErrorOf() by name, of those of σ, α and Tc that are estimated or held.
+  std::map<std::string, double> errors = {};
 
   /// True if it is fitted, and nothing is in WhyNotEstablished().
   [[nodiscard]] bool done() const { return fault.empty(); }
