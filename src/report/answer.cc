@@ -111,10 +111,9 @@ class Writer {
     if (IsMoot(report_, estimate)) return;
     std::vector<std::string> parts = {TextOf(symbol, estimate), remark};
     for (const ContactQuantity& quantity : report_.contact) {
-      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's. From a bound
-      // that was given nothing follows.
+      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
       const bool is_said =
-          quantity.parameter != estimate.name || estimate.is_at_given_bound() ||
+          quantity.parameter != estimate.name ||
           (quantity.name == "compliance" && report_.ValueOf("contact_radius")) ||
           (quantity.name == "equivalent_radius" && report_.ValueOf("sigma_over_hertz_mindlin"));
       if (is_said) continue;

@@ -24,6 +24,8 @@ struct Dependence {
   [[nodiscard]] double LogAt(double value) const {
     return exponent * std::log(factor == 0 ? value : 1 + factor * value);
   }
+  /// True if the quantity would be the user's own, from a bound that was given.
+  [[nodiscard]] bool is_given() const { return exponent != 0 && parameter->is_at_given_bound(); }
   /// False where the parameter has no value, but a limit or nothing.
   [[nodiscard]] bool has_value() const {
     return exponent == 0 || WhatIsShown(*parameter).value.has_value();
@@ -55,6 +57,7 @@ double CorrelationOf(const FitResult& fit, const Dependence& one, const Dependen
 /// their correlation and the uncertainty of its inputs. Of one that has a limit alone it has one.
 void Fill(const FitResult& fit, const UncertainValue& found, const Dependence& one,
           const Dependence& other, ContactQuantity& quantity) {
+  if (one.is_given() || other.is_given()) return;
   if (one.has_value() && other.has_value()) quantity.value = found.value;
   const double of_inputs = NormalQuantile(fit.confidence) * found.standard_error / found.value;
   for (const bool up : {false, true}) {

@@ -146,24 +146,26 @@ using Reasons = std::map<std::string, std::string>;
 
 Reasons ReasonsOf(const Report& report) {
   if (report.failed()) return {{"", "the fit failed: " + report.fit.solver.message}};
-  return {{"", "not a finite number"},
-          {"input.columns", "the file has none, or it is not used"},
-          {"input.left_out", "they are not in a row, or no samples"},
-          {"correlation", "one of the two is not fitted, or has no error"},
-          {"parameters", "it is held, or the record does not determine it"},
-          {"adequacy", "it is not judged, or no half gap is measured"},
-          {"adequacy.causes", "no term takes it into account"},
-          {"measured", "no cycle shows it, or fewer than two"},
-          {"law", "the record does not distinguish the laws, or they are not compared"},
-          {"contact",
-           "it needs what is not known of the contact, or follows from a parameter that is open"},
-          {"contact.normal_load.ci95", "it is exact, or not known"},
-          {"mapping.sigma_over_hertz_mindlin",
-           "it needs what is not known of the contact, or sigma is open"},
-          {"mapping",
-           "alpha is held, kept off 1/3 by bounds, at one or not identifiable, or it is a torque"},
-          {"compared", "there are no cycles to hold out, or a fit without them failed"},
-          {"next", "nothing that was tried helps by a tenth"}};
+  return {
+      {"", "not a finite number"},
+      {"input.columns", "the file has none, or it is not used"},
+      {"input.left_out", "they are not in a row, or no samples"},
+      {"correlation", "one of the two is not fitted, or has no error"},
+      {"parameters", "it is held, or the record does not determine it"},
+      {"adequacy", "it is not judged, or no half gap is measured"},
+      {"adequacy.causes", "no term takes it into account"},
+      {"measured", "no cycle shows it, or fewer than two"},
+      {"law", "the record does not distinguish the laws, or they are not compared"},
+      {"contact",
+       "it needs what is not known of the contact, or follows from a parameter that is open or at "
+       "a bound that was given"},
+      {"contact.normal_load.ci95", "it is exact, or not known"},
+      {"mapping.sigma_over_hertz_mindlin",
+       "it needs what is not known of the contact, or sigma is open"},
+      {"mapping",
+       "alpha is held, kept off 1/3 by bounds, at one or not identifiable, or it is a torque"},
+      {"compared", "there are no cycles to hold out, or a fit without them failed"},
+      {"next", "nothing that was tried helps by a tenth"}};
 }
 
 /// Adds a place for every null of a value, with the reason of the longest path that leads there.

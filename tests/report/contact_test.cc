@@ -128,6 +128,20 @@ TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {
               std::hypot(std::log(1.02), std::log(1.11 / 1.1)), 1e-9);
 }
 
+TEST(DescribeContact, FollowsFromNoBoundThatWasGiven) {
+  identification::FitResult fit = Fit();
+  identification::ParameterEstimate& slip_force = fit.parameters[2];
+  slip_force.status = identification::ParameterStatus::kAtUpperBound;
+  contact::KnownContact known;
+  known.normal_load = 50.0;
+  EXPECT_TRUE(Of(DescribeContact(fit, known), "friction_coefficient").value);
+  slip_force.bounds = {0.0, slip_force.value};
+  for (const char* name : {"friction_coefficient", "gross_slip_displacement"}) {
+    EXPECT_FALSE(Of(DescribeContact(fit, known), name).value) << name;
+    EXPECT_FALSE(Of(DescribeContact(fit, known), name).upper) << name;
+  }
+}
+
 TEST(DescribeContact, GivesNoSlipForceThatThePlateausContradict) {
   identification::FitResult fit = Fit();
   testing::AddParameter(fit, "asymmetry", "-", 0.5, 0.05);
