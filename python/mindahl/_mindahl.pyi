@@ -51,7 +51,7 @@ class Fitted:
 
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
 
-BatchEntry = tuple[str, str, bool, list[str], str]
+BatchEntry = tuple[str, str, bool, list[str], str, dict[str, float]]
 """Name, fault, done, notes and JSON of the fit."""
 
 def fit_one(record: Record, request: FitRequest, strict: int,

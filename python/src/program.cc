@@ -48,7 +48,8 @@ py::tuple RunCommand(const std::vector<std::string>& words) {
 /// Returns the state of a source of a batch, which other processes give back: name, fault, done,
 /// notes and JSON of the fit.
 py::tuple StateOf(const BatchEntry& entry) {
-  return py::make_tuple(entry.file, entry.fault, entry.done(), entry.notes, entry.fit);
+  return py::make_tuple(entry.file, entry.fault, entry.done(), entry.notes, entry.fit,
+                        entry.errors);
 }
 
 std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
@@ -59,6 +60,7 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
     entry.fault = state[1].cast<std::string>();
     entry.notes = state[3].cast<std::vector<std::string>>();
     entry.fit = state[4].cast<std::string>();
+    entry.errors = state[5].cast<std::map<std::string, double>>();
   }
   return entries;
 }

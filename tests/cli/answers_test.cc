@@ -46,7 +46,7 @@ const std::vector<Answer> kAnswers = {
      {"rejected"}},
     {"ARigThatIsConfoundedLeavesNoStiffness",
      "fit data/behind_a_rig.csv",
-     {"(32.2 … 49.2)", "0.333)", "in a compliant rig", "a rig of 101 N/µm"},
+     {"(32.2 … 49.1)", "0.333)", "in a compliant rig", "a rig of 101 N/µm"},
      {"identifiable"}},
     {"ColumnsAreNamedAndTheFrictionTorqueIsTheTorque",
      "fit data/joint.csv",

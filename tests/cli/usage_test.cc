@@ -336,7 +336,7 @@ TEST_F(Config, RefusesWhatItDoesNotKnow) {
         {"model = \"dahl\"\nb = 3:5\n", "options.toml:2:6: "},
         {"model = \"dahl\"\n\nmodel = \"mindlin\"\n", "options.toml:3:9: "},
         {"model = \"open\n", "options.toml:1:14: "},
-        {"fix = [1, [2]]\n", "--fix: '1' is invalid"},
+        {"fix = [1, [2]]\n", "--fix: parameter '1' is unknown"},
         {"model = 2026-01-01\n", "--model: 2026-01-01 not in"},
         {"[fits]\nmodel = \"mindlin\"\n", "'fits' is no option of fit"},
         {"model = \"coulomb\"\n", "--model"},

@@ -122,7 +122,7 @@ TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
       {"--noise-in displacement",
        [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }},
       {"--terms asymmetry", [](FitRequest& r) { r.terms = {"asymmetry"}; }},
-      {"--terms of a column", [](FitRequest& r) { r.terms = {"pressure"}; }},
+      {"'pressure' is no term", [](FitRequest& r) { r.terms = {"pressure"}; }},
       {"--covariate", [](FitRequest& r) { r.fit.covariates = {"pressure"}; }},
       {"--compare", [](FitRequest& r) { r.compare = true; }}};
   for (const auto& [words, change] : refused) {
