@@ -98,7 +98,7 @@ def test_a_copied_record_still_has_columns_without_units(sphere, tmp_path):
     np.savetxt(path, np.column_stack(sphere[1:]), delimiter=",", header="motion,PULL-N", comments="")
     record = mindahl.read_csv(path, displacement="1", force="2")
     text = mindahl.fit(record).text()
-    assert "'motion' (1) in m, force 'PULL-N' (2) in N" in text
+    assert "'motion' (1) in m (assumed), force 'PULL-N' (2) in N (assumed)" in text
     assert mindahl.fit(pickle.loads(pickle.dumps(record))).text() == text
 
 
