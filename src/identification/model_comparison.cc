@@ -102,6 +102,14 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
         .rms = fit.rms,
         .delta_aicc = evidence.Aicc(samples * rms * rms, fit.CountFreeParameters())});
     if (cycles.empty()) continue;
+    // Without a rig, which comes first, the model is the same as with a rigid one.
+    const ParameterEstimate* const stiffness = score.rig ? fit.Find("rig_stiffness") : nullptr;
+    const auto last = scores.rbegin() + 1;
+    if (stiffness != nullptr && stiffness->status == ParameterStatus::kAtUpperBound &&
+        last != scores.rend() && last->model == own.model) {
+      score.held_out_rms = last->held_out_rms;
+      continue;
+    }
     own.initial_state = fit.initial_state;
     own.preparation.force_sense = fit.force_sense;
     StartFrom(fit, own);

@@ -160,10 +160,14 @@ std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& re
 }  // namespace
 
 Ends Profile(const Estimates& fitted, std::size_t parameter, Region& region) {
-  // With many terms most of these searches end at a bound of one; they are not repeated.
+  // With many terms, and a rig that is rigid, most of these searches end at a bound; they are not
+  // repeated.
   constexpr std::size_t kMany = 8;
-  const SolverOptions search{.max_iterations = fitted.options().max_iterations,
-                             .is_rough = fitted.problem().parameters.free().size() > kMany};
+  const Parameter& rig = fitted.problem().parameters[kRig];
+  const SolverOptions search{
+      .max_iterations = fitted.options().max_iterations,
+      .is_rough = fitted.problem().parameters.free().size() > kMany ||
+                  SideOf(rig, fitted.solution().theta[kRig]) == BoundSide::kUpper};
   HeldParameter held(fitted, parameter, search, region);
   const std::optional<double> lower = held.End(-1.0);
   const bool is_open = parameter == kSlipForce && held.IsOpenAbove();
