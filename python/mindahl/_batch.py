@@ -106,4 +106,4 @@ def _fit_one(task: tuple[Any, str, int, dict[str, Any], Any]) -> _mindahl.BatchE
             raise ValueError(f"{name}: {len(records)} records: each is a source of its own")
         return _mindahl.fit_one(records[0], request, strictness, stops)
     except ValueError as error:
-        return name, str(error), False, [], "", {}
+        return name, str(error) or repr(error), False, [], "", {}

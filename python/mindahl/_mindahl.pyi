@@ -52,7 +52,7 @@ class Fitted:
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
 
 BatchEntry = tuple[str, str, bool, list[str], str, dict[str, float]]
-"""Name, fault, done, notes and JSON of the fit."""
+"""Name, fault, done, notes and JSON of the fit, and stated errors by parameter."""
 
 def fit_one(record: Record, request: FitRequest, strict: int,
             stops: Optional[Callable[[], bool]]) -> BatchEntry: ...

@@ -46,7 +46,7 @@ py::tuple RunCommand(const std::vector<std::string>& words) {
 }
 
 /// Returns the state of a source of a batch, which other processes give back: name, fault, done,
-/// notes and JSON of the fit.
+/// notes and JSON of the fit, and stated errors by parameter.
 py::tuple StateOf(const BatchEntry& entry) {
   return py::make_tuple(entry.file, entry.fault, entry.done(), entry.notes, entry.fit,
                         entry.errors);

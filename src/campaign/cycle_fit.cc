@@ -142,7 +142,8 @@ CycleFit CycleFitter::Fit(const Cycle& read) {
   for (const std::string name : {"sigma", "alpha", "slip_force", "force_offset"}) {
     const identification::ParameterEstimate* estimate = result->Find(name);
     if (estimate == nullptr) continue;
-    if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
+    const bool is_own = estimate->is_known() && !estimate->is_at_given_bound();
+    if (name != "force_offset" && !is_own) fit.flags.push_back(name + "_open");
     fit[name] = estimate->value;
     const double error = result->ErrorOf(*estimate);
     if (estimate->standard_error && std::isfinite(error)) fit[name + "_error"] = error;

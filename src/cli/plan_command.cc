@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 
 #include "cli/command.h"
 #include "mindahl/identification/fit.h"
@@ -118,7 +119,12 @@ Plan MakePlan(const PlanOptions& options) {
   }
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (options.displacement_noise) expected.displacement_noise = *options.displacement_noise;
-  plan.slip = SlipReach(expected.law, expected.rig);
+  // A steady loop of Dahl's own law is one of Masing's of 2^α times the stiffness.
+  models::BranchLaw masing = expected.law;
+  if (expected.model->memory == models::Memory::kNone) {
+    masing.tangential_stiffness *= std::exp2(masing.shape_exponent);
+  }
+  plan.slip = SlipReach(masing, expected.rig);
   std::vector<double> amplitudes = options.amplitudes;
   constexpr double kMargin = 1.03;  // of an amplitude that is to reach slip
   constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, kMargin,

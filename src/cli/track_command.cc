@@ -173,7 +173,7 @@ std::string ToPage(const TrackedTest& test, const Json& quantities, std::string_
                           : report::VerdictHtml("bad", "failed", "no fit of a cycle converged");
   return report::PageHtml(
       fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
-      verdict + report::ListHtml(changes) +
+      verdict + (test.is_established ? report::ListHtml(changes) : "") +
           report::SectionHtml(
               "Over the test",
               report::ListHtml(Facts(test)) +

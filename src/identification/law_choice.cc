@@ -46,7 +46,7 @@ std::vector<SampleRange> UnknownPast(std::span<const loop::RecordView> records,
     const double unloaded = std::max(kUnloaded * (high - low) / 2, kDeviations * noise);
     // Whatever forces are added to its own, a virgin contact may be unloaded at the first sample.
     const ParameterEstimate* const origin = dahl.FindOf(dahl.records[r], "displacement_offset");
-    // The row where it was may be missing, and noise has moved it.
+    // The row of the unloaded contact may be missing: it lies within two samples' travel.
     const std::span<const double> x = records[r].displacement;
     const double elastic = kUnloaded * dahl.law.slip_force / dahl.law.tangential_stiffness;
     const bool begins_unloaded =

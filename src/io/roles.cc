@@ -74,7 +74,8 @@ std::size_t ColumnIn(std::string_view name, const CsvTable& table, std::string_v
   const auto number = NumberIn<std::size_t>(name.starts_with('#') ? name.substr(1) : "");
   if (number >= 1 && number <= table.columns.size()) return *number - 1;
   if (const auto named = table.Named(name, role)) return *named;
-  const bool is_formula = name.starts_with('(') || name.find('/') != name.npos;
+  const std::size_t divisor = std::min(name.find('/'), name.size() - 1) + 1;
+  const bool is_formula = name.starts_with('(') || NumberIn<double>(name.substr(divisor));
   Refuse("{}: no column is called '{}' (for the {}): {}{}{}", at, name, RulesOf(role).name,
          table.Listing(), is_formula ? "; a formula must be " : "", is_formula ? kSum : "");
 }

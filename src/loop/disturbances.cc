@@ -167,9 +167,9 @@ using Readings = std::span<const double>;
 /// [steps about it and of the record] Least height of a spike over both neighbours. Noise of
 /// standard deviation s has steps of 2.2 s at the third of 24 and would have to stand out by 6.6.
 constexpr double kSpike = 3.0;
-/// [samples] Longer ones are as well a pulse of the drive or an inner loop, ...
+/// [samples] Longer ones are as well a pulse of the drive or an inner loop.
 constexpr std::size_t kLongestSpike = 3;
-/// ... but of a force under a motion that goes on in one direction.
+/// [samples] The same of a force while the motion goes on in one direction.
 constexpr std::size_t kLongestOfForce = 20;
 /// [samples] So many to either side of a spike are looked at: the edges of a square wave of six
 /// samples a cycle come often enough within them to be distinguished from spikes.
@@ -260,8 +260,8 @@ double StepAbout(const Repaired& channel, std::size_t begin, std::size_t end) {
 /// True if a motion goes on in one direction from before [begin, end) to behind it.
 bool GoesOn(Readings motion, std::size_t begin, std::size_t end) {
   const auto own = motion.subspan(begin - 2, end + 4 - begin);
-  return std::ranges::is_sorted(own, std::less_equal()) ||
-         std::ranges::is_sorted(own, std::greater_equal());
+  return std::ranges::adjacent_find(own, std::greater_equal()) == own.end() ||
+         std::ranges::adjacent_find(own, std::less_equal()) == own.end();
 }
 
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
@@ -273,11 +273,11 @@ std::size_t SpikeAt(const Repaired& channel, Readings motion, double usual_step,
   double least = sense * values[i];
   const std::size_t longest = motion.empty() ? kLongestSpike : kLongestOfForce;
   for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + longest; ++end) {
-    if (end > i + kLongestSpike && !GoesOn(motion, i, end)) return 0;
+    if (!(least > before)) return 0;
     const double height = least - std::max(before, sense * values[end]);
     if (height > kSpike * channel.Step(end + 1) && height > kSpike * StepAbout(channel, i, end) &&
         height > kSpike * usual_step) {
-      return end - i;
+      return end <= i + kLongestSpike || GoesOn(motion, i, end) ? end - i : 0;
     }
     least = std::min(least, sense * values[end]);
   }

@@ -163,7 +163,7 @@ Reasons ReasonsOf(const Report& report) {
       {"mapping.sigma_over_hertz_mindlin",
        "it needs what is not known of the contact, or sigma is open"},
       {"mapping",
-       "alpha is held, kept off 1/3 by bounds, at one or not identifiable, or it is a torque"},
+       "alpha is held, at a bound, not identifiable or bounded away from 1/3, or it is a torque"},
       {"compared", "there are no cycles to hold out, or a fit without them failed"},
       {"next", "nothing that was tried helps by a tenth"}};
 }

@@ -79,7 +79,10 @@ struct ParameterEstimate {
   }
   /// True if the search stopped at a bound of the user's that is not the sign alone: the value is
   /// the user's, not the record's.
-  [[nodiscard]] bool is_at_given_bound() const { return is_at_bound() && bounds && value != 0; }
+  [[nodiscard]] bool is_at_given_bound() const {
+    if (!is_at_bound() || !bounds) return false;
+    return (status == ParameterStatus::kAtLowerBound ? bounds->lower : bounds->upper) != 0;
+  }
   /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
     return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;

@@ -57,10 +57,11 @@ struct Interpolated {
 };
 
 /// Finds the samples that no contact and no drive has made.
-/// - A spike of 1 to 3 samples, of a force under a motion in one direction of up to 20, leaves its
-///   neighbours and comes back: it lies beyond both by more than three times the steps about it
-///   (the third largest of 24) and of the record (of ten steps nine are smaller). So corners,
-///   turning points of few samples a cycle, and square pulses that come again are none.
+/// - A spike of 1 to 3 samples leaves its neighbours and comes back: it lies beyond both by more
+///   than three times the steps about it (the third largest of 24) and of the record (of ten steps
+///   nine are smaller). One of the force has up to 20 samples while the displacement goes on in one
+///   direction. So corners, turning points of few samples a cycle, and square pulses that come
+///   again are none.
 /// - A dropout reads exactly 0 and 0, inside the record and outside its neighbours' range by more
 ///   than two such steps of the record in either channel; where one does, all inside that read so.
 /// Glitches that make up more than a quarter of a channel are none. In the first and last two

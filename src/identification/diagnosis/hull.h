@@ -42,7 +42,8 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
 /// clamped to the range of half gap, T* and value with the same margin. Of a loop that slips at its
 /// ends alone, and a model that misses little, T* takes the place of the half gap, and no lower end
 /// is raised. The margin combines the scatter of the cycles' half gaps with the force that the
-/// model misses. Closed intervals are marked as including the discrepancy; open ones do not change.
+/// model misses. Closed intervals are marked as including the discrepancy; open ones, but
+/// Tc's, do not change.
 void CoverDiscrepancy(const Estimates& fitted, FitResult& result);
 
 /// Raises the lower limit of Tc, of an interval that is open above, to the force that the contact
