@@ -121,15 +121,15 @@ std::vector<Course::Bin> Weighted(Bins bins) {
   const std::vector<double> squares = SquaredBends(weighted);
   const std::size_t window =
       std::min(squares.size(), std::clamp<std::size_t>(bins.size() / 8, 16, 32));
-  // Returns the variance in the window from a place on, or in the last one.
-  const auto scatter = [&](std::size_t place) {
-    const std::size_t begin = std::min(place, squares.size() - window);
+  std::vector<double> scatter;  // variance of the window that begins at each place
+  for (std::size_t begin = 0; begin + window <= squares.size(); ++begin) {
     const auto own = std::span(squares).subspan(begin, window);
-    return VarianceOf({own.begin(), own.end()});
-  };
+    scatter.push_back(VarianceOf({own.begin(), own.end()}));
+  }
   for (std::size_t i = 0; i < weighted.size(); ++i) {
-    const double before = scatter(std::max(i, window) - window);
-    weighted[i].count *= usual / std::max({before, scatter(i), FloorOf(weighted[i]), least});
+    const double before = scatter[std::min(std::max(i, window) - window, scatter.size() - 1)];
+    const double after = scatter[std::min(i, scatter.size() - 1)];
+    weighted[i].count *= usual / std::max({before, after, FloorOf(weighted[i]), least});
   }
   return weighted;
 }

@@ -46,8 +46,9 @@ FitOptions OptionsOf(const Expectation& expected) {
                                {"slip_force", expected.law.slip_force}}};
   options.preparation.force_sense = 1;
   options.preparation.displacement_noise = expected.displacement_noise;
-  if (std::isfinite(expected.rig.stiffness))
+  if (std::isfinite(expected.rig.stiffness)) {
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  }
   return options;
 }
 

@@ -143,7 +143,7 @@ std::string_view JudgementOf(std::string_view verdict) {
 
 std::string_view JudgementOf(const ParameterEstimate& estimate) {
   const Shown shown = WhatIsShown(estimate);
-  if (!shown.is_given.empty()) return kPlain;
+  if (!shown.how_given.empty()) return kPlain;
   if (!shown.value && !shown.lower && !shown.upper) return kBad;
   return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
 }
@@ -163,9 +163,10 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
 }
 
 std::string ValueText(const ParameterEstimate& estimate) {
-  const auto [value, lower, upper, is_given] = WhatIsShown(estimate);
-  if (!is_given.empty())
-    return fmt::format("{} ({})", QuantityWithInterval(value, {}, {}, estimate.unit), is_given);
+  const auto [value, lower, upper, how_given] = WhatIsShown(estimate);
+  if (!how_given.empty()) {
+    return fmt::format("{} ({})", QuantityWithInterval(value, {}, {}, estimate.unit), how_given);
+  }
   const std::string text = QuantityWithInterval(value, lower, upper, estimate.unit);
   return text.empty() ? "not determined" : text;
 }

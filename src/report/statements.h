@@ -65,10 +65,10 @@ std::string_view JudgementOf(const ParameterEstimate& estimate);
 /// or the bound that was given, or nothing.
 struct Shown {
   std::optional<double> value, lower, upper;
-  std::string_view is_given = {};  ///< "held" or "at the bound that was given"; "" of an estimate
+  std::string_view how_given = {};  ///< "held" or "at the bound that was given"; "" of an estimate
 
   /// True for an estimate with its interval.
-  [[nodiscard]] bool is_estimate() const { return value && is_given.empty(); }
+  [[nodiscard]] bool is_estimate() const { return value && how_given.empty(); }
 };
 Shown WhatIsShown(const ParameterEstimate& estimate);
 

@@ -237,7 +237,7 @@ TEST_F(TrackCommand, SaysInTheFirstLineThatCyclesHaveNoFit) {
               EndsWith("; 11 of 98 cycles without a fit or a loop, the last with both is 90"));
   const std::string page = ContentOf("page.html");
   EXPECT_THAT(page, HasSubstr("incomplete"));
-  // Of the loops, the last figure, no line is a step.
+  // The last figure shows the loops; its caption does not explain lines of steps.
   const std::string loops = page.substr(page.find("<figure id=\"loops\">"));
   EXPECT_THAT(loops, HasSubstr("Measured, of the cycles in the legend."));
   EXPECT_THAT(loops, Not(HasSubstr("Dashed")));

@@ -71,8 +71,9 @@ bool HasSlipped(const LoopFacts& facts);
 
 /// Returns ∮ T dδ [J] from one sample to a later one, trapezoidal, closed by a chord.
 /// @throws InvalidArgument when it overflows
-/// Where long double has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
-/// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the n samples.
+/// The sum has an error below 1 ε of the result plus n·2⁻⁶²·Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ| on platforms whose
+/// long double has a mantissa of 64 bits; n is the number of samples, and Tᵢ is measured from the
+/// force at the first of them.
 double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last);
 
 /// @param record       with the force of either sign

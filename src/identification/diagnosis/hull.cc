@@ -205,8 +205,8 @@ void CoverDiscrepancy(const Estimates& fitted, FitResult& result) {
   if (is_held || !half_gap || !loop::HasSlipped(widest.facts)) return;
   const double margin = std::hypot(ScatterOfCycles(result), result.adequacy.misfit);
   const double peak_force = widest.facts.peak_force / widest.load_ratio;
-  // Of a loop that reaches its slip force at the ends alone, and which the law follows, the half
-  // gap is no plateau: it has carried T* there, of which other forces may be a part.
+  // If the loop slips at its ends alone, the half gap in mid-stroke is below the slip force. If the
+  // law also describes the loop, T* replaces the half gap; other forces may be a part of T*.
   const bool is_plateau = loop::Slides(widest.facts) || result.adequacy.use != Use::kQuantitative;
   const double carried = is_plateau ? *half_gap : peak_force;
   // The value itself is no better known than the gap.

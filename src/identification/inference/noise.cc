@@ -152,7 +152,7 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
                                     const Thresholds& thresholds) {
   const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
-  // As many as a stroke has samples: a ripple may have a period of a few.
+  // Each part has about one sample, so that a ripple with a period of a few samples is resolved.
   constexpr Eigen::Index kFewestParts = 20;
   constexpr Eigen::Index kMostParts = 200;
   const Eigen::Index parts = std::clamp(
