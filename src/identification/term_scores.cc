@@ -40,7 +40,7 @@ TermScore ScoreColumns(const Problem& problem, std::span<const std::size_t> insi
                        const Linearization& at, const Evidence& evidence,
                        std::span<const std::size_t> added, const Eigen::MatrixXd& columns) {
   const Gram gram(at.jacobian, columns, at.residual, kOwnShare);
-  const GramAxes axes = gram.AxesOf();
+  const GramAxes axes = gram.AxesOfAll();
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   TermScore score{.parameters = added.size()};
   for (Eigen::Index c = 0; const std::size_t p : added) {

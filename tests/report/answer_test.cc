@@ -163,32 +163,31 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
   EXPECT_THAT(LineOf(input, "friction"), HasSubstr("keeps changing while the contact slides"));
 }
 
-TEST(Answer, OfALowerBoundSaysNoMoreOfWhatFollows) {
+/// An input whose slip force is effective and at a bound, under a known load.
+ReportInput WithSlipForce(ParameterStatus status) {
   ReportInput input = MadeInput();
   input.known.normal_load = 50.0;
-  auto& slip_force = input.fit.parameters[2];
-  slip_force.status = ParameterStatus::kAtLowerBound;
-  slip_force.identifiability = Identifiability::kEffective;
+  input.fit.parameters[2].status = status;
+  input.fit.parameters[2].identifiability = Identifiability::kEffective;
+  return input;
+}
+
+TEST(Answer, OfALowerBoundSaysNoMoreOfWhatFollows) {
+  const ReportInput input = WithSlipForce(ParameterStatus::kAtLowerBound);
   EXPECT_THAT(LineOf(input, "friction"), StartsWith("μ < 0.816, Tc < 40.8 N"));
 }
 
 TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
-  ReportInput input = MadeInput();
-  input.known.normal_load = 50.0;
+  ReportInput input = WithSlipForce(ParameterStatus::kAtUpperBound);
   auto& slip_force = input.fit.parameters[2];
-  slip_force.status = ParameterStatus::kAtUpperBound;
-  slip_force.identifiability = Identifiability::kEffective;
   slip_force.upper95 = slip_force.value;
   EXPECT_THAT(LineOf(input, "friction"),
               HasSubstr("μ 0.8000 (0.7840 … 0.8000), Tc 40.00 N (39.20 … 40.00)"));
 }
 
 TEST(Answer, SaysThatAValueIsAtTheBoundThatWasGiven) {
-  ReportInput input = MadeInput();
-  input.known.normal_load = 50.0;
+  ReportInput input = WithSlipForce(ParameterStatus::kAtUpperBound);
   auto& slip_force = input.fit.parameters[2];
-  slip_force.status = ParameterStatus::kAtUpperBound;
-  slip_force.identifiability = Identifiability::kEffective;
   slip_force.bounds = {0.0, slip_force.value};
   EXPECT_EQ(LineOf(input, "friction"), "Tc 40 N (at the bound that was given)");
   input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;

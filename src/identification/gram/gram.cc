@@ -76,11 +76,13 @@ double Gram::IndependentTests() const {
   return std::max(1.0, std::pow(values.sqrt().sum(), 2) / values.sum());
 }
 
-GramAxes Gram::AxesOf(std::vector<Eigen::Index> places) const {
-  if (places.empty()) {
-    places.resize(static_cast<std::size_t>(free_.cols()));
-    std::iota(places.begin(), places.end(), Eigen::Index{0});
-  }
+GramAxes Gram::AxesOfAll() const {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(free_.cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return AxesOf(all);
+}
+
+GramAxes Gram::AxesOf(const std::vector<Eigen::Index>& places) const {
   GramAxes axes;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(free_(places, places));
   // Square of the norm of an axis that is independent of the others.

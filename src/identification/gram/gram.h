@@ -43,8 +43,9 @@ class Gram {
   /// Number of independent tests that a test of each of C's columns amounts to: (Σ√λ)²/Σλ of the
   /// eigenvalues λ of their correlations (Galwey 2009).
   [[nodiscard]] double IndependentTests() const;
-  /// @param places  of some of C's columns; empty: of all
-  [[nodiscard]] GramAxes AxesOf(std::vector<Eigen::Index> places = {}) const;
+  /// @param places  of some of C's columns
+  [[nodiscard]] GramAxes AxesOf(const std::vector<Eigen::Index>& places) const;
+  [[nodiscard]] GramAxes AxesOfAll() const;
   /// Returns the step to the least sum of squares of r + Jδ + Cγ.
   /// @param gains  of the axes: 1/value of least squares, less with a prior
   [[nodiscard]] GramStep StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const;

@@ -96,7 +96,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
   departures.columns.conservativeResizeLike(
       Eigen::MatrixXd::Zero(jacobian.rows(), departures.columns.cols()));
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
-  GramAxes axes = gram.AxesOf();
+  GramAxes axes = gram.AxesOfAll();
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
@@ -105,7 +105,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted) {
     Eigen::MatrixXd columns(readings, jacobian.cols() + departures.columns.cols());
     columns << jacobian.topRows(readings), departures.columns.topRows(readings);
     gram.SetNoise(noise.Product(data.records, process, columns));
-    axes = gram.AxesOf();
+    axes = gram.AxesOfAll();
   }
   AdequacyTest test;
   const auto own = static_cast<double>(axes.values.size());
